@@ -28,7 +28,7 @@ in_decoder && match($0, /if\(__[A-Za-z0-9_]+ > maxlen - pos\) return -1;/) {
 }
 # &v[0] of an empty vector is undefined.
 in_decoder && match($0, /&this->[A-Za-z0-9_]+\[0\], this->/) {
-  vector = substr($0, RSTART + 1, RLENGTH - 11)
+  vector = substr($0, RSTART + 1, RLENGTH - 12)
   $0 = substr($0, 1, RSTART - 1) vector ".data(), this->" substr($0, RSTART + RLENGTH)
 }
 { print }
