@@ -18,7 +18,8 @@ class Random {
   double Uniform(double min, double max) { return min + (max - min) * Uniform(); }
   /// Uniform in 0 .. n - 1; @p n > 0.
   int Index(int n) {
-    return static_cast<int>((static_cast<unsigned __int128>(engine_()) * static_cast<unsigned>(n)) >> 64);
+    return static_cast<int>(
+        (static_cast<unsigned __int128>(engine_()) * static_cast<unsigned>(n)) >> 64);
   }
   /// Normal with mean 0 and standard deviation 1 (Box-Muller).
   double Normal() {

@@ -34,7 +34,8 @@ Projection Project(const Pinhole& camera, const Eigen::Vector3d& p_C) {
 }
 
 Eigen::Vector3d Unproject(const Pinhole& camera, const Eigen::Vector2d& uv) {
-  const Eigen::Vector2d distorted((uv.x() - camera.cx) / camera.fx, (uv.y() - camera.cy) / camera.fy);
+  const Eigen::Vector2d distorted((uv.x() - camera.cx) / camera.fx,
+                                  (uv.y() - camera.cy) / camera.fy);
   Eigen::Vector2d p = distorted;
   if (camera.has_distortion()) {
     for (int i = 0; i < 100; ++i) {

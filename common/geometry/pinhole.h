@@ -1,17 +1,16 @@
 #pragma once
 
-#include <array>
-
 #include <Eigen/Core>
+#include <array>
 
 namespace visavis {
 
 /// One camera: pinhole with OpenCV's five distortion coefficients. Pixel (0, 0) is the centre of
 /// the first pixel; camera axes x right, y down, z forward.
 struct Pinhole {
-  int width{0}, height{0};                      ///< [px]
-  double fx{0}, fy{0};                          ///< [px]
-  double cx{0}, cy{0};                          ///< [px]
+  int width{0}, height{0};                          ///< [px]
+  double fx{0}, fy{0};                              ///< [px]
+  double cx{0}, cy{0};                              ///< [px]
   std::array<double, 5> distortion{0, 0, 0, 0, 0};  ///< k1 k2 p1 p2 k3
 
   bool has_distortion() const { return distortion != std::array<double, 5>{}; }

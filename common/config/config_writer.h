@@ -1,0 +1,51 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
+#include "common/config/rule.h"
+
+namespace visavis {
+
+/// Visitor that writes a configuration as YAML: the counterpart of ConfigReader, for
+/// --print-config and for the tests that hold shipped files against the defaults.
+class ConfigWriter {
+ public:
+  template <typename T>
+  void Visit(const std::string& key, T* value) {
+    if constexpr (HasSerialize<T>::value) {
+      ConfigWriter writer;
+      value->Serialize(&writer);
+      node_[key] = writer.node_;
+    } else {
+      node_[key] = *value;
+    }
+  }
+  template <typename T>
+  void Visit(const std::string& key, T* value, const Rule<T>&) {
+    Visit(key, value);
+  }
+
+  const YAML::Node& node() const { return node_; }
+
+ private:
+  template <typename T, typename = void>
+  struct HasSerialize : std::false_type {};
+  template <typename T>
+  struct HasSerialize<
+      T, std::void_t<decltype(std::declval<T&>().Serialize(static_cast<ConfigWriter*>(nullptr)))>>
+      : std::true_type {};
+
+  YAML::Node node_{YAML::NodeType::Map};
+};
+
+/// The whole configuration as YAML text.
+template <typename Config>
+std::string DumpConfig(Config config) {
+  ConfigWriter writer;
+  config.Serialize(&writer);
+  return YAML::Dump(writer.node());
+}
+
+}  // namespace visavis

@@ -1,0 +1,124 @@
+#include "common/config/config_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/config/config_writer.h"
+
+namespace visavis {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+struct Inner {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("min_mm", &min_mm, InRange(-500.0, 500.0, "mm"));
+    a->Visit("max_mm", &max_mm);
+  }
+  double min_mm{-200}, max_mm{200};
+};
+
+struct Config {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("mode", &mode, OneOf({"none", "exact"}));
+    a->Visit("count", &count, InRange(1, 10));
+    a->Visit("search", &search);
+    a->Visit("list", &list);
+  }
+  void ValidateOrThrow() const {
+    if (!(search.min_mm < search.max_mm)) {
+      throw FieldError("search.max_mm", std::to_string(search.max_mm), "must exceed search.min_mm");
+    }
+  }
+  std::string mode{"exact"};
+  int count{3};
+  Inner search;
+  std::vector<double> list{1, 2};
+};
+
+std::string WriteFile(const std::string& text) {
+  const std::string name = ::testing::TempDir() + "/config_reader_test.yaml";
+  std::ofstream(name) << text;
+  return name;
+}
+
+auto ThrowsConfigError(const ::testing::Matcher<const std::string&>& matcher) {
+  return ThrowsMessage<ConfigError>(matcher);
+}
+
+TEST(ConfigReaderTest, AMissingKeyKeepsItsDefault) {
+  const auto config = LoadConfig<Config>(WriteFile("search: {min_mm: -100}\n"));
+  EXPECT_EQ(config.search.min_mm, -100);
+  EXPECT_EQ(config.search.max_mm, 200);
+  EXPECT_EQ(config.count, 3);
+}
+
+TEST(ConfigReaderTest, AnEmptyFileGivesTheDefaults) {
+  EXPECT_EQ(LoadConfig<Config>(WriteFile("")).mode, "exact");
+}
+
+TEST(ConfigReaderTest, AnUnknownKeyIsNamedWithFileAndLine) {
+  EXPECT_THAT(
+      [] { LoadConfig<Config>(WriteFile("count: 5\nsearch:\n  min: 3\n")); },
+      ThrowsConfigError(AllOf(HasSubstr("config_reader_test.yaml:3: search.min: 3: unknown key"),
+                              HasSubstr("min_mm"))));
+}
+
+TEST(ConfigReaderTest, AValueOutOfRangeIsNamedWithItsRule) {
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("\ncount: 0\n")); },
+              ThrowsConfigError(HasSubstr("config_reader_test.yaml:2: count: 0: must be 1 to 10")));
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("search: {min_mm: .nan}\n")); },
+              ThrowsConfigError(HasSubstr("must be -500 to 500 mm")));
+}
+
+TEST(ConfigReaderTest, AWrongTypeIsNamed) {
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("count: many\n")); },
+              ThrowsConfigError(HasSubstr("count: many: must be a whole number")));
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("search: 3\n")); },
+              ThrowsConfigError(HasSubstr("search: 3: must be a mapping")));
+}
+
+TEST(ConfigReaderTest, ARuleBetweenKeysCarriesThePlaceOfItsKey) {
+  EXPECT_THAT(
+      [] { LoadConfig<Config>(WriteFile("count: 2\nsearch:\n  min_mm: 9\n  max_mm: 4\n")); },
+      ThrowsConfigError(HasSubstr("yaml:4: search.max_mm: 4.0")));
+}
+
+TEST(ConfigReaderTest, OverridesWinAndAreNamedInErrors) {
+  const auto config = LoadConfig<Config>(WriteFile("count: 5\n"), {"count=7", "search.min_mm=-9"});
+  EXPECT_EQ(config.count, 7);
+  EXPECT_EQ(config.search.min_mm, -9);
+  EXPECT_THAT(
+      [] { LoadConfig<Config>("", {"mode=fast"}); },
+      ThrowsConfigError(HasSubstr("--set mode=fast: mode: fast: must be one of none exact")));
+  EXPECT_THAT([] { LoadConfig<Config>("", {"mode"}); }, ThrowsConfigError(HasSubstr("KEY=VALUE")));
+  EXPECT_THAT([] { LoadConfig<Config>("", {"nothing.at.all=1"}); },
+              ThrowsConfigError(HasSubstr("--set nothing.at.all=1")));
+}
+
+TEST(ConfigReaderTest, AMissingFileAndBrokenYamlAreNamed) {
+  EXPECT_THAT([] { LoadConfig<Config>("/nowhere/x.yaml"); },
+              ThrowsConfigError(HasSubstr("/nowhere/x.yaml: cannot be read")));
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("count: [1\n")); },
+              ThrowsConfigError(HasSubstr("is no YAML")));
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("- 1\n")); },
+              ThrowsConfigError(HasSubstr("mapping")));
+}
+
+TEST(ConfigWriterTest, WhatIsWrittenReadsBackEqual) {
+  Config config;
+  config.count = 9;
+  config.search.max_mm = 123.5;
+  const auto read = LoadConfig<Config>(WriteFile(DumpConfig(config)));
+  EXPECT_EQ(DumpConfig(read), DumpConfig(config));
+  EXPECT_EQ(read.search.max_mm, 123.5);
+}
+
+}  // namespace
+}  // namespace visavis
