@@ -1,0 +1,80 @@
+#include "common/service/live_loop.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <exception>
+#include <system_error>
+
+#include <poll.h>
+#include <systemd/sd-daemon.h>
+
+#include "common/bus/channels.h"
+
+namespace visavis {
+namespace {
+
+constexpr std::int64_t kStatusPeriodUs = 1'000'000;
+constexpr int kMaxMessagesAtOnce = 64;  // so that a flood cannot starve timers and stop
+
+std::string DescribeSmallBuffer(const ReceiveBuffer& buffer) {
+  if (!buffer.too_small()) return "";
+  return "receive buffer of " + std::to_string(buffer.granted_bytes) + " bytes where " +
+         std::to_string(buffer.asked_bytes) +
+         " were asked, raw images will be lost: 'sudo sysctl -w net.core.rmem_max=" +
+         std::to_string(buffer.asked_bytes) + "' and restart";
+}
+
+// Microseconds until the earlier of the two, at least 0.
+timespec TimeUntil(std::int64_t now_us, std::int64_t due_us) {
+  const std::int64_t wait_us = std::max<std::int64_t>(0, due_us - now_us);
+  return {static_cast<time_t>(wait_us / 1'000'000), static_cast<long>(wait_us % 1'000'000 * 1000)};
+}
+
+template <typename Action>
+void Guard(StatusReporter* status, const Clock& clock, const Action& action) {
+  try {
+    action();
+  } catch (const std::exception& e) {
+    status->Rejected(e.what(), clock.NowUs());
+  }
+}
+
+}  // namespace
+
+void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock& clock,
+             const StopSignal& stop) {
+  std::int64_t next_status_us = clock.NowUs();
+  sd_notify(0, "READY=1");
+  pollfd fds[] = {{stop.fd(), POLLIN, 0}, {bus->fd(), POLLIN, 0}};
+  while (!service->finished()) {
+    const std::int64_t now_us = clock.NowUs();
+    if (now_us < next_status_us - 2 * kStatusPeriodUs) next_status_us = now_us;  // the clock was set back
+    if (now_us >= next_status_us) {
+      status->SetCondition("receive_buffer", DescribeSmallBuffer(bus->GetReceiveBuffer()));
+      Guard(status, clock, [&] { service->UpdateStatus(); });
+      Guard(status, clock, [&] { bus->Publish(kServiceStatusChannel, status->Make(now_us)); });
+      sd_notify(0, "WATCHDOG=1");
+      next_status_us = std::max(next_status_us + kStatusPeriodUs, now_us);
+    }
+    if (service->next_wake_us() <= now_us) Guard(status, clock, [&] { service->Wake(); });
+
+    const timespec wait = TimeUntil(clock.NowUs(), std::min(next_status_us, service->next_wake_us()));
+    if (ppoll(fds, 2, &wait, nullptr) < 0) {
+      if (errno == EINTR) continue;
+      throw std::system_error(errno, std::generic_category(), "poll");
+    }
+    if (fds[0].revents & POLLIN) break;
+    if (fds[1].revents & POLLIN) {
+      for (int i = 0; i < kMaxMessagesAtOnce; ++i) {
+        bool handled = true;
+        Guard(status, clock, [&] { handled = bus->HandleOne(0); });
+        if (!handled) break;
+        if (service->next_wake_us() <= clock.NowUs()) break;
+      }
+    }
+  }
+  sd_notify(0, "STOPPING=1");
+  service->Finish();
+}
+
+}  // namespace visavis

@@ -1,0 +1,82 @@
+#include "common/service/run_service.h"
+
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "common/bus/lcm_bus.h"
+#include "common/eventlog/event_log.h"
+#include "common/eventlog/event_log_writer.h"
+#include "common/service/live_loop.h"
+#include "common/service/version.h"
+
+namespace visavis {
+namespace {
+
+void TellStatusOfRejects(Bus* bus, StatusReporter* status, const Clock* clock) {
+  bus->set_reject_handler([status, clock](const std::string& channel, const std::string& reason) {
+    status->Rejected(channel + ": " + reason, clock->NowUs());
+  });
+}
+
+int RunOffline(const ServiceTraits& traits, const ServiceFlags& flags, const StopSignal& stop,
+               const ServiceFactory& make_service, Replay::Filter filter) {
+  ManualClock clock;
+  StatusReporter status(traits.name, kVersion);
+  std::optional<EventLogReader> reader;
+  if (!flags.replay.empty()) reader.emplace(flags.replay);
+  std::optional<EventLogWriter> writer;
+  if (!flags.record.empty()) {
+    if (!flags.replay.empty() && std::filesystem::exists(flags.record) &&
+        std::filesystem::equivalent(flags.replay, flags.record)) {
+      throw std::invalid_argument("--record " + flags.record + ": must be another file than --replay");
+    }
+    writer.emplace(flags.record, EventLogWriter::Mode::kReplace);
+  }
+  LogBus bus(flags.prefix, &clock, writer ? &*writer : nullptr);
+  TellStatusOfRejects(&bus, &status, &clock);
+  const auto service = make_service({&bus, &clock, &status, false});
+  if (reader) {
+    filter.keep_images = flags.keep_images;
+    Replay(service.get(), &bus, &clock, &status, writer ? &*writer : nullptr).Run(&*reader, filter, stop);
+    if (reader->num_damaged_bytes() > 0) {
+      std::cerr << "visavis-" << traits.name << ": " << flags.replay << ": left out "
+                << reader->num_damaged_bytes() << " damaged bytes\n";
+    }
+  } else {
+    RunFast(service.get(), &clock, &status, stop);
+  }
+  if (writer) writer->Close();
+  if (status.rejected() > 0) {
+    std::cerr << "visavis-" << traits.name << ": refused " << status.rejected()
+              << " messages, the last: " << status.last_error() << '\n';
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags, const StopSignal& stop,
+                      const ServiceFactory& make_service, Replay::Filter filter) {
+  if (!flags.replay.empty() || flags.fast) {
+    return RunOffline(traits, flags, stop, make_service, std::move(filter));
+  }
+  const SystemClock clock;
+  StatusReporter status(traits.name, kVersion);
+  LcmBus bus(flags.lcm_url, flags.prefix);
+  TellStatusOfRejects(&bus, &status, &clock);
+  const auto service = make_service({&bus, &clock, &status, true});
+  std::clog << "visavis-" << traits.name << ": running on " << flags.lcm_url << std::endl;
+  RunLive(service.get(), &bus, &status, clock, stop);
+  std::clog << "visavis-" << traits.name << ": stopped" << std::endl;
+  return kExitOk;
+}
+
+int ReportFailure(const ServiceTraits& traits, const std::exception& e, int exit_code) {
+  std::cerr << "visavis-" << traits.name << ": " << e.what() << '\n';
+  return exit_code;
+}
+
+void PrintText(const std::string& text) { std::cout << text; }
+
+}  // namespace visavis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "common/bus/bus.h"
+#include "common/core/clock.h"
+#include "common/service/status_reporter.h"
+
+namespace visavis {
+
+/// What a service is given to live on. All are aliased and outlive it.
+struct ServiceContext {
+  Bus* bus;
+  const Clock* clock;      ///< the host's when live; the log's time in a replay
+  StatusReporter* status;  ///< counts and conditions; published once a second for the service
+  bool live;               ///< false: replay or --fast, where nothing may depend on real time
+};
+
+/// One service: message handlers subscribed in its constructor, and timed wakes. All of it runs in
+/// one thread; RunService() (run_service.h) drives it.
+class Service {
+ public:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+  virtual ~Service() = default;
+
+  /// When Wake() is due, in the clock's microseconds; kNever: no timer.
+  virtual std::int64_t next_wake_us() const { return kNever; }
+  virtual void Wake() {}
+  /// True once there is nothing left to do: the process ends with exit code 0.
+  virtual bool finished() const { return false; }
+  /// Called once a second before the status goes out.
+  virtual void UpdateStatus() {}
+  /// Called once at the end of a replay or a live run, for what is still waiting.
+  virtual void Finish() {}
+};
+
+}  // namespace visavis
