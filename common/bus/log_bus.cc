@@ -24,6 +24,8 @@ void LogBus::SubscribeBytes(const std::string& channel, BytesHandler handler, in
   handlers_[channel].push_back(std::move(handler));
 }
 
-void LogBus::SubscribeAll(BytesHandler handler, int) { all_handlers_.push_back(std::move(handler)); }
+void LogBus::SubscribeAll(BytesHandler handler, int) {
+  all_handlers_.push_back(std::move(handler));
+}
 
 }  // namespace visavis

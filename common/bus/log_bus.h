@@ -25,7 +25,8 @@ class LogBus final : public Bus {
 
  private:
   void PublishBytes(const std::string& channel, const std::uint8_t* data, int size) override;
-  void SubscribeBytes(const std::string& channel, BytesHandler handler, int queue_capacity) override;
+  void SubscribeBytes(const std::string& channel, BytesHandler handler,
+                      int queue_capacity) override;
 
   const Clock& clock_;
   EventLogWriter* const writer_;

@@ -1,12 +1,12 @@
 #include "common/service/live_loop.h"
 
+#include <poll.h>
+#include <systemd/sd-daemon.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <exception>
 #include <system_error>
-
-#include <poll.h>
-#include <systemd/sd-daemon.h>
 
 #include "common/bus/channels.h"
 
@@ -48,7 +48,8 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
   pollfd fds[] = {{stop.fd(), POLLIN, 0}, {bus->fd(), POLLIN, 0}};
   while (!service->finished()) {
     const std::int64_t now_us = clock.NowUs();
-    if (now_us < next_status_us - 2 * kStatusPeriodUs) next_status_us = now_us;  // the clock was set back
+    if (now_us < next_status_us - 2 * kStatusPeriodUs)
+      next_status_us = now_us;  // the clock was set back
     if (now_us >= next_status_us) {
       status->SetCondition("receive_buffer", DescribeSmallBuffer(bus->GetReceiveBuffer()));
       Guard(status, clock, [&] { service->UpdateStatus(); });
@@ -58,7 +59,8 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
     }
     if (service->next_wake_us() <= now_us) Guard(status, clock, [&] { service->Wake(); });
 
-    const timespec wait = TimeUntil(clock.NowUs(), std::min(next_status_us, service->next_wake_us()));
+    const timespec wait =
+        TimeUntil(clock.NowUs(), std::min(next_status_us, service->next_wake_us()));
     if (ppoll(fds, 2, &wait, nullptr) < 0) {
       if (errno == EINTR) continue;
       throw std::system_error(errno, std::generic_category(), "poll");

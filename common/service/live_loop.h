@@ -8,9 +8,9 @@
 
 namespace visavis {
 
-/// Runs a live service until SIGINT, SIGTERM or until it has finished: messages, timed wakes, status
-/// once a second, READY and WATCHDOG to systemd. An exception that a handler or wake lets out is
-/// counted and told in the status, and the service goes on.
+/// Runs a live service until SIGINT, SIGTERM or until it has finished: messages, timed wakes,
+/// status once a second, READY and WATCHDOG to systemd. An exception that a handler or wake lets
+/// out is counted and told in the status, and the service goes on.
 void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock& clock,
              const StopSignal& stop);
 

@@ -26,7 +26,8 @@ void Replay::WakeUntil(std::int64_t log_us) {
     } catch (const std::exception& e) {
       status_.Rejected(e.what(), clock_.NowUs());
     }
-    if (service_.next_wake_us() == before) break;  // a wake that moves nothing must not hang a replay
+    if (service_.next_wake_us() == before)
+      break;  // a wake that moves nothing must not hang a replay
   }
 }
 

@@ -29,7 +29,8 @@ int RunOffline(const ServiceTraits& traits, const ServiceFlags& flags, const Sto
   if (!flags.record.empty()) {
     if (!flags.replay.empty() && std::filesystem::exists(flags.record) &&
         std::filesystem::equivalent(flags.replay, flags.record)) {
-      throw std::invalid_argument("--record " + flags.record + ": must be another file than --replay");
+      throw std::invalid_argument("--record " + flags.record +
+                                  ": must be another file than --replay");
     }
     writer.emplace(flags.record, EventLogWriter::Mode::kReplace);
   }
@@ -38,7 +39,8 @@ int RunOffline(const ServiceTraits& traits, const ServiceFlags& flags, const Sto
   const auto service = make_service({&bus, &clock, &status, false});
   if (reader) {
     filter.keep_images = flags.keep_images;
-    Replay(service.get(), &bus, &clock, &status, writer ? &*writer : nullptr).Run(&*reader, filter, stop);
+    Replay(service.get(), &bus, &clock, &status, writer ? &*writer : nullptr)
+        .Run(&*reader, filter, stop);
     if (reader->num_damaged_bytes() > 0) {
       std::cerr << "visavis-" << traits.name << ": " << flags.replay << ": left out "
                 << reader->num_damaged_bytes() << " damaged bytes\n";
@@ -56,8 +58,9 @@ int RunOffline(const ServiceTraits& traits, const ServiceFlags& flags, const Sto
 
 }  // namespace
 
-int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags, const StopSignal& stop,
-                      const ServiceFactory& make_service, Replay::Filter filter) {
+int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags,
+                      const StopSignal& stop, const ServiceFactory& make_service,
+                      Replay::Filter filter) {
   if (!flags.replay.empty() || flags.fast) {
     return RunOffline(traits, flags, stop, make_service, std::move(filter));
   }

@@ -23,8 +23,9 @@ using ServiceFactory = std::function<std::unique_ptr<Service>(const ServiceConte
 
 /// Runs a service as the flags say (live, replay or fast) and returns the exit code; prints what
 /// ended it. @p filter serves a replay.
-int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags, const StopSignal& stop,
-                      const ServiceFactory& make_service, Replay::Filter filter);
+int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags,
+                      const StopSignal& stop, const ServiceFactory& make_service,
+                      Replay::Filter filter);
 
 /// Prints one line "visavis-NAME: what" to stderr and returns @p exit_code.
 int ReportFailure(const ServiceTraits& traits, const std::exception& e, int exit_code);
@@ -35,8 +36,9 @@ void PrintText(const std::string& text);
 template <typename XService, typename XConfig, typename = void>
 struct HasReplayFilter : std::false_type {};
 template <typename XService, typename XConfig>
-struct HasReplayFilter<XService, XConfig,
-                       std::void_t<decltype(XService::ReplayFilter(std::declval<const XConfig&>(), ""))>>
+struct HasReplayFilter<
+    XService, XConfig,
+    std::void_t<decltype(XService::ReplayFilter(std::declval<const XConfig&>(), ""))>>
     : std::true_type {};
 
 /// The whole life of a service process: signals, flags, configuration, bus, loop, exit code 0

@@ -1,9 +1,8 @@
 #include "common/service/service_flags.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
-
-#include <CLI/CLI.hpp>
 
 #include "common/bus/lcm_bus.h"
 #include "common/service/version.h"
@@ -25,7 +24,8 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
   std::vector<std::string> alias_values(traits.aliases.size());
   for (std::size_t i = 0; i < traits.aliases.size(); ++i) {
     const FlagAlias& alias = traits.aliases[i];
-    app.add_option(alias.flag, alias_values[i], alias.help + " (short for --set " + alias.key + "=)");
+    app.add_option(alias.flag, alias_values[i],
+                   alias.help + " (short for --set " + alias.key + "=)");
   }
   CLI::Option* record = nullptr;
   if (traits.replays || traits.runs_fast) {
@@ -35,10 +35,12 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
     auto* replay = app.add_option("--replay", flags.replay,
                                   "read a log lock-step, as fast as it goes, without a network");
     record->needs(replay);
-    app.add_flag("--keep-images", flags.keep_images, "with --record: keep the images too")->needs(record);
+    app.add_flag("--keep-images", flags.keep_images, "with --record: keep the images too")
+        ->needs(record);
   }
   if (traits.runs_fast) {
-    auto* fast = app.add_flag("--fast", flags.fast, "as fast as it goes, into --record, without a network");
+    auto* fast =
+        app.add_flag("--fast", flags.fast, "as fast as it goes, into --record, without a network");
     fast->needs(record);
     record->needs(fast);
   }

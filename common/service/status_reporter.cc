@@ -1,12 +1,12 @@
 #include "common/service/status_reporter.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
 #include <sys/resource.h>
 #include <sys/timex.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 namespace visavis {
 namespace {
@@ -117,15 +117,16 @@ void StatusReporter::ReadProcess(std::int64_t now_us) {
   timex time{};
   const int state = adjtimex(&time);
   const bool synchronised = state >= 0 && state != TIME_ERROR && !(time.status & STA_UNSYNC);
-  message_.clock_state = synchronised ? service_status_t::CLOCK_SYNCHRONISED
-                                      : service_status_t::CLOCK_UNSYNCHRONISED;
+  message_.clock_state =
+      synchronised ? service_status_t::CLOCK_SYNCHRONISED : service_status_t::CLOCK_UNSYNCHRONISED;
   message_.clock_offset_s = synchronised ? 1e-6 * static_cast<double>(time.esterror) : std::nan("");
 }
 
 void StatusReporter::SetLatencies() {
   const auto quantile = [this](double q) {
     if (latencies_ms_.empty()) return std::nan("");
-    const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(latencies_ms_.size() - 1) + 0.5);
+    const auto at =
+        static_cast<std::ptrdiff_t>(q * static_cast<double>(latencies_ms_.size() - 1) + 0.5);
     std::nth_element(latencies_ms_.begin(), latencies_ms_.begin() + at, latencies_ms_.end());
     return static_cast<double>(latencies_ms_[static_cast<std::size_t>(at)]);
   };

@@ -1,12 +1,12 @@
 #include "common/service/stop_signal.h"
 
-#include <cerrno>
-#include <csignal>
-#include <system_error>
-
 #include <poll.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <system_error>
 
 namespace visavis {
 

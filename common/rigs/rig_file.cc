@@ -1,0 +1,150 @@
+#include "common/rigs/rig_file.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "common/config/config_reader.h"
+#include "common/config/config_writer.h"
+
+namespace visavis {
+namespace {
+
+struct CameraFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("width", &camera.width, InRange(1, 16384, "px"));
+    a->Visit("height", &camera.height, InRange(1, 16384, "px"));
+    a->Visit("fx", &camera.fx, InRange(1.0, 1e6, "px"));
+    a->Visit("fy", &camera.fy, InRange(1.0, 1e6, "px"));
+    a->Visit("cx", &camera.cx, InRange(-16384.0, 32768.0, "px"));
+    a->Visit("cy", &camera.cy, InRange(-16384.0, 32768.0, "px"));
+    a->Visit("distortion", &camera.distortion);
+  }
+  Pinhole camera;
+};
+
+struct TransformFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("p_m", &p_m);
+    a->Visit("q_wxyz", &q_wxyz);
+  }
+  static TransformFields Of(const RigidTransform& X) {
+    const Eigen::Quaterniond q = CanonicalQuaternion(X.linear());
+    const Eigen::Vector3d p = X.translation();
+    return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}};
+  }
+  RigidTransform ToTransform(const std::string& key) const {
+    const Eigen::Quaterniond q(q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]);
+    if (!(std::abs(q.norm() - 1) <= 1e-3)) {
+      throw FieldError(key + ".q_wxyz", "norm " + std::to_string(q.norm()),
+                       "must be 1 within 0.001");
+    }
+    const Eigen::Vector3d p(p_m[0], p_m[1], p_m[2]);
+    if (!p.allFinite()) throw FieldError(key + ".p_m", "not finite", "must be three numbers in m");
+    return MakeTransform(q, p);
+  }
+  std::array<double, 3> p_m{0, 0, 0};
+  std::array<double, 4> q_wxyz{1, 0, 0, 0};
+};
+
+struct ArmFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("urdf", &urdf);
+    a->Visit("base", &base);
+    a->Visit("tip", &tip);
+    a->Visit("X_WB", &X_WB);
+  }
+  std::string urdf, base, tip;
+  TransformFields X_WB;
+};
+
+struct RigFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("right", &right);
+    a->Visit("left", &left);
+    a->Visit("X_CL", &X_CL);
+    if (has_hand_eye) a->Visit("X_HC", &X_HC);
+    if (has_arm) a->Visit("arm", &arm);
+  }
+  CameraFields right, left;
+  TransformFields X_CL, X_HC;
+  ArmFields arm;
+  bool has_hand_eye{true}, has_arm{true};
+};
+
+std::string ReadText(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FieldError("arm.urdf", path.string(), "cannot be read");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
+                          const std::string& filename) {
+  for (const char* key : {"right", "left", "X_CL"}) {
+    if (!root[key]) throw FieldError(key, "missing", "must be given");
+  }
+  RigDescription description;
+  description.rig = {fields.right.camera, fields.left.camera, fields.X_CL.ToTransform("X_CL")};
+  if (root["X_HC"]) description.X_HC = fields.X_HC.ToTransform("X_HC");
+  if (root["arm"]) {
+    const auto folder = std::filesystem::path(filename).parent_path();
+    description.arm = ArmDescription{ReadText(folder / fields.arm.urdf), fields.arm.base,
+                                     fields.arm.tip, fields.arm.X_WB.ToTransform("arm.X_WB")};
+  }
+  const auto check = [](const char* key, const auto& validate) {
+    try {
+      validate();
+    } catch (const std::invalid_argument& e) {
+      throw FieldError(key, "contradictory", e.what());
+    }
+  };
+  check("right", [&] { description.rig.right.ValidateOrThrow(); });
+  check("left", [&] { description.rig.left.ValidateOrThrow(); });
+  check("X_CL", [&] { description.rig.ValidateOrThrow(); });
+  check(root["arm"] ? "arm" : "X_HC", [&] { description.ValidateOrThrow(); });
+  return description;
+}
+
+}  // namespace
+
+RigDescription LoadRigFile(const std::string& filename) {
+  const ConfigSource source(filename, {});
+  RigFields fields;
+  ConfigReader reader(source, source.root(), "");
+  fields.Serialize(&reader);
+  reader.RejectUnknownKeys();
+  try {
+    return FromFields(fields, source.root(), filename);
+  } catch (const FieldError& e) {
+    throw ConfigError(source.PlaceOf(e.key()) + ": " + e.what());
+  }
+}
+
+void SaveRigFile(const RigDescription& description, const std::string& filename) {
+  RigFields fields;
+  fields.right.camera = description.rig.right;
+  fields.left.camera = description.rig.left;
+  fields.X_CL = TransformFields::Of(description.rig.X_CL);
+  fields.has_hand_eye = description.X_HC.has_value();
+  fields.has_arm = description.arm.has_value();
+  if (description.X_HC) fields.X_HC = TransformFields::Of(*description.X_HC);
+  const auto write = [](const std::filesystem::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw std::runtime_error(path.string() + ": cannot be written");
+  };
+  if (description.arm) {
+    const ArmDescription& arm = *description.arm;
+    fields.arm = {"arm.urdf", arm.base_link, arm.tip_link, TransformFields::Of(arm.X_WB)};
+    write(std::filesystem::path(filename).parent_path() / "arm.urdf", arm.urdf);
+  }
+  write(filename, DumpConfig(fields) + "\n");
+}
+
+}  // namespace visavis
