@@ -1,0 +1,42 @@
+#include "services/recogniser/recogniser_config.h"
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "common/config/config_error.h"
+#include "services/recogniser/fitness_kernel.h"
+
+namespace visavis {
+
+void RecogniserConfig::ValidateOrThrow() const {
+  search.ValidateOrThrow("search.");
+  start.ValidateOrThrow("start.");
+  ga.ValidateOrThrow("ga.");
+  head.ValidateOrThrow("head.");
+  if (!rig_file.empty() && !std::filesystem::exists(rig_file)) {
+    throw FieldError("rig_file", rig_file, "must be a file that exists, or empty");
+  }
+  if (simd != "auto" &&
+      ("," + std::string(SimdTargets()) + ",").find("," + simd + ",") == std::string::npos) {
+    throw FieldError("simd", simd, std::string("must be auto or one of ") + SimdTargets());
+  }
+}
+
+PublishedEstimator::Settings RecogniserConfig::PublishedSettings() const {
+  return {published,
+          ga,
+          SearchSpace::FromConfig(search),
+          Recentres(search),
+          start,
+          ParseFeedforward(feedforward),
+          static_cast<std::uint64_t>(seed)};
+}
+
+FeedforwardMode ParseFeedforward(const std::string& word) {
+  if (word == "none") return FeedforwardMode::kNone;
+  if (word == "jacobian") return FeedforwardMode::kJacobian;
+  if (word == "exact") return FeedforwardMode::kExact;
+  throw std::invalid_argument("feedforward: " + word + ": must be none, jacobian or exact");
+}
+
+}  // namespace visavis

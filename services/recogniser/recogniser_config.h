@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/config/rule.h"
+#include "services/recogniser/head_model.h"
+#include "services/recogniser/published_estimator.h"
+
+namespace visavis {
+
+/// Channels' names, without the prefix.
+struct RecogniserChannels {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("stereo_images", &stereo_images, ChannelName());
+    a->Visit("stereo_rig", &stereo_rig, ChannelName());
+    a->Visit("arm_state", &arm_state, ChannelName());
+    a->Visit("camera_pose", &camera_pose, ChannelName());
+    a->Visit("command", &command, ChannelName());
+    a->Visit("head_pose", &head_pose, ChannelName());
+    a->Visit("timing", &timing, ChannelName());
+    a->Visit("population", &population, ChannelName());
+  }
+  std::string stereo_images{"STEREO_IMAGES"};
+  std::string stereo_rig{"STEREO_RIG"};
+  std::string arm_state{"ARM_STATE"};
+  std::string camera_pose{"CAMERA_POSE"};
+  std::string command{"RECOGNISER_COMMAND"};
+  std::string head_pose{"HEAD_POSE"};
+  std::string timing{"RECOGNISER_TIMING"};
+  std::string population{"GA_POPULATION"};
+};
+
+/// Configuration of the recogniser; see recogniser.yaml.
+struct RecogniserConfig {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("estimator", &estimator, OneOf({"published"}));
+    a->Visit("feedforward", &feedforward, OneOf({"none", "jacobian", "exact"}));
+    a->Visit("ego_motion", &ego_motion, OneOf({"auto", "arm", "camera_pose", "none"}));
+    a->Visit("arm_wait_ms", &arm_wait_ms, InRange(0, 1000, "ms"));
+    a->Visit("seed", &seed, InRange<std::int64_t>(0, 1'000'000'000));
+    a->Visit("simd", &simd);
+    a->Visit("rig_file", &rig_file);
+    a->Visit("population_every", &population_every, InRange(0, 1000000));
+    a->Visit("search", &search);
+    a->Visit("start", &start);
+    a->Visit("ga", &ga);
+    a->Visit("published", &published);
+    a->Visit("head", &head);
+    a->Visit("channels", &channels);
+  }
+  /// @throws FieldError naming key, value and rule.
+  void ValidateOrThrow() const;
+
+  /// What the published estimator takes of all this.
+  PublishedEstimator::Settings PublishedSettings() const;
+
+  std::string estimator{"published"};
+  std::string feedforward{"exact"};
+  /// Where the camera's motion comes from. auto: the arm where the rig has one and its states come,
+  /// else camera poses where they come, else none.
+  std::string ego_motion{"auto"};
+  int arm_wait_ms{15};       ///< [ms] how long a pair waits for the first motion sample after it
+  std::int64_t seed{1};      ///< of all that is random
+  std::string simd{"auto"};  ///< auto, or a SIMD target of this machine; the poses are the same
+  std::string rig_file;      ///< rig.yaml used until a STEREO_RIG comes; empty: wait for it
+  int population_every{10};  ///< [pairs] between two GA_POPULATION; 0: never
+  SearchSpaceConfig search;
+  StartConfig start;
+  GaConfig ga;
+  PublishedConfig published;
+  HeadModelConfig head;
+  RecogniserChannels channels;
+};
+
+/// "none", "jacobian" or "exact". @throws std::invalid_argument for another word.
+FeedforwardMode ParseFeedforward(const std::string& word);
+
+}  // namespace visavis

@@ -1,0 +1,259 @@
+#include "services/recogniser/recogniser_service.h"
+
+#include <cmath>
+
+#include "common/bus/channels.h"
+#include "common/convert/message_error.h"
+#include "common/convert/pose_message.h"
+#include "common/convert/rig_message.h"
+#include "common/rigs/rig_file.h"
+#include "services/recogniser/recogniser_messages.h"
+
+namespace visavis {
+namespace {
+
+constexpr std::int64_t kNewSessionUs = 1'000'000;  // a jump back beyond this starts a new session
+
+}  // namespace
+
+ServiceTraits RecogniserService::Traits() {
+  ServiceTraits traits;
+  traits.name = "recogniser";
+  traits.description = "Finds a head's 6-DoF pose in stereo pairs from a moving robot";
+  traits.replays = true;
+  return traits;
+}
+
+Replay::Filter RecogniserService::ReplayFilter(const RecogniserConfig& config,
+                                               const std::string& prefix) {
+  Replay::Filter filter;
+  const RecogniserChannels channels = config.channels;
+  filter.is_own_output = [channels, prefix,
+                          status = service_status_t{}](const LogEvent& event) mutable {
+    if (event.channel == prefix + kServiceStatusChannel) {
+      const int size = static_cast<int>(event.data.size());
+      return status.decode(event.data.data(), 0, size) == size && status.service == "recogniser";
+    }
+    return event.channel == prefix + channels.head_pose ||
+           event.channel == prefix + channels.timing ||
+           event.channel == prefix + channels.population;
+  };
+  filter.is_image = [channel = prefix + channels.stereo_images](const LogEvent& event) {
+    return event.channel == channel;
+  };
+  return filter;
+}
+
+RecogniserService::RecogniserService(const RecogniserConfig& config, const ServiceContext& context)
+    : config_(config),
+      context_(context),
+      timer_(&MonotonicSeconds),
+      ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
+      feedforward_(ParseFeedforward(config.feedforward)) {
+  SelectSimdTarget(config.simd.c_str());
+  if (!config.rig_file.empty()) SetRig(LoadRigFile(config.rig_file));
+  const RecogniserChannels& channels = config_.channels;
+  Bus* bus = context_.bus;
+  bus->Subscribe<stereo_rig_t>(channels.stereo_rig, [this](const stereo_rig_t& m) { OnRig(m); });
+  // Live, the newest pair counts: a queue of old ones would only add latency.
+  bus->Subscribe<images_t>(
+      channels.stereo_images, [this](const images_t& m) { OnImages(m); }, 1);
+  bus->Subscribe<arm_state_t>(
+      channels.arm_state, [this](const arm_state_t& m) { OnArmState(m); }, 200);
+  bus->Subscribe<rigid_transform_t>(
+      channels.camera_pose, [this](const rigid_transform_t& m) { OnCameraPose(m); }, 200);
+  bus->Subscribe<recogniser_command_t>(channels.command,
+                                       [this](const recogniser_command_t& m) { OnCommand(m); });
+  context_.status->SetCondition("rig", rig_ ? "" : "no " + channels.stereo_rig + " yet");
+}
+
+RecogniserService::~RecogniserService() = default;
+
+void RecogniserService::SetRig(const RigDescription& description) {
+  ego_motion_.SetRig(description);
+  preparer_ = std::make_unique<FramePreparer>(description.rig);
+  estimator_ = std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head,
+                                                    description.rig);
+  estimator_->SetFeedforward(feedforward_);
+  rig_ = description.rig;
+  last_utime_us_.reset();
+}
+
+void RecogniserService::OnRig(const stereo_rig_t& message) {
+  if (rig_message_ && SameRig(message, *rig_message_)) return;
+  SetRig(FromMessage(message));
+  rig_message_ = message;
+  context_.status->SetCondition("rig", "");
+}
+
+// Ages are judged in message time. A jump back beyond a second is a new session, for instance a log
+// that is played again.
+void RecogniserService::NoteTime(std::int64_t utime_us) {
+  if (utime_us < newest_utime_us_ - kNewSessionUs) {
+    ProcessWaiting();
+    ego_motion_.Clear();
+    if (estimator_) estimator_->Reset();
+    last_utime_us_.reset();
+    last_image_seq_.reset();
+    pairs_ = 0;
+    newest_utime_us_ = utime_us;
+  }
+  newest_utime_us_ = std::max(newest_utime_us_, utime_us);
+}
+
+void RecogniserService::OnArmState(const arm_state_t& message) {
+  NoteTime(message.utime);
+  const std::string refused = ego_motion_.AddArmState(
+      message.utime, message.joint_names, message.joint_position, message.joint_velocity);
+  if (!refused.empty())
+    context_.status->Rejected("arm_state_t: " + refused, context_.clock->NowUs());
+  CheckReady();
+}
+
+void RecogniserService::OnCameraPose(const rigid_transform_t& message) {
+  const RigidTransform X_WC = FromMessage(message);
+  NoteTime(message.utime);
+  const std::string refused = ego_motion_.AddCameraPose(message.utime, X_WC);
+  if (!refused.empty())
+    context_.status->Rejected("rigid_transform_t: " + refused, context_.clock->NowUs());
+  CheckReady();
+}
+
+void RecogniserService::OnCommand(const recogniser_command_t& message) {
+  if (!message.feedforward.empty()) feedforward_ = ParseFeedforward(message.feedforward);
+  RequireField(message.estimator.empty() || message.estimator == config_.estimator,
+               "recogniser_command_t.estimator", message.estimator,
+               "must be empty or the one configured");
+  if (message.pause == recogniser_command_t::SWITCH_ON) paused_ = true;
+  if (message.pause == recogniser_command_t::SWITCH_OFF) paused_ = false;
+  context_.status->SetCondition("paused", paused_ ? "paused by command" : "");
+  if (!estimator_) return;
+  estimator_->SetFeedforward(feedforward_);
+  if (message.set_search_space) estimator_->SetSearchSpace(SearchSpaceFromMessage(message));
+  if (message.reset) estimator_->Reset();
+}
+
+void RecogniserService::OnImages(const images_t& message) {
+  NoteTime(message.utime);
+  ProcessWaiting();  // a pair that still waits goes first, with what is known of its motion
+  const std::int64_t now_us = context_.clock->NowUs();
+  if (ego_motion_.IsCertainAt(message.utime) || config_.arm_wait_ms == 0) {
+    ProcessPair(message, now_us);
+    return;
+  }
+  waiting_ = message;
+  is_waiting_ = true;
+  waiting_received_us_ = now_us;
+  wait_until_us_ = now_us + 1000 * config_.arm_wait_ms;
+}
+
+void RecogniserService::CheckReady() {
+  if (is_waiting_ && ego_motion_.IsCertainAt(waiting_.utime)) ProcessWaiting();
+}
+
+void RecogniserService::ProcessWaiting() {
+  if (!is_waiting_) return;
+  is_waiting_ = false;
+  wait_until_us_ = kNever;
+  ProcessPair(waiting_, waiting_received_us_);
+}
+
+void RecogniserService::ProcessPair(const images_t& message, std::int64_t received_us) {
+  timer_.Restart();
+  timer_.Enter(Stage::kDecode);
+  const Estimate* estimate = nullptr;
+  std::string refused;
+  if (estimator_ && !paused_) {
+    try {
+      const StereoFrame frame = preparer_->Prepare(FromMessage(message, *rig_));
+      timer_.Enter(Stage::kOther);
+      const CameraStep step =
+          last_utime_us_ ? ego_motion_.Between(*last_utime_us_, message.utime) : CameraStep{};
+      estimate = &estimator_->Process(frame, step, &timer_);
+    } catch (const std::invalid_argument& e) {
+      refused = e.what();
+    }
+  }
+  TellMissing(message);
+  timer_.Enter(Stage::kOther);
+  PublishEstimate(message, estimate, received_us);
+  if (estimate) last_utime_us_ = message.utime;
+  if (!refused.empty()) context_.status->Rejected(refused, context_.clock->NowUs());
+}
+
+void RecogniserService::PublishEstimate(const images_t& message, const Estimate* estimate,
+                                        std::int64_t received_us) {
+  pose_ = EmptyHeadPose();
+  pose_.utime = message.utime;
+  pose_.seq = pairs_++;
+  pose_.status = paused_ || (pairs_ > 1 && !estimate) ? head_pose_t::STATUS_LOST
+                                                      : head_pose_t::STATUS_SEARCHING;
+  if (estimate) {
+    FillHeadPose(*estimate, &pose_);
+    FillMotion(message.utime, *estimate);
+  }
+  context_.bus->Publish(config_.channels.head_pose, pose_);
+  PublishTiming(received_us);
+  if (estimate && config_.population_every > 0 && pose_.seq % config_.population_every == 0) {
+    PublishPopulation(message.utime);
+  }
+  context_.status->Processed(timing_.latency_ms);
+}
+
+// Where the camera was: the pose in the world, and what the feedforward had to go by.
+void RecogniserService::FillMotion(std::int64_t utime_us, const Estimate& estimate) {
+  pose_.feedforward_source = SourceCode(ego_motion_.source(), ego_motion_.missing());
+  const auto camera = ego_motion_.At(utime_us);
+  if (!camera) {
+    if (ego_motion_.source() != EgoMotionSource::kNone) {
+      pose_.feedforward_source = head_pose_t::SOURCE_MISSING;
+      ++pairs_without_motion_;
+    }
+    return;
+  }
+  pose_.feedforward_extrapolated = camera->extrapolated;
+  if (camera->extrapolated) ++extrapolated_;
+  if (estimate.X_CM) SetWorldPose(camera->X_WC * *estimate.X_CM, &pose_);
+}
+
+void RecogniserService::PublishTiming(std::int64_t received_us) {
+  timer_.Enter(Stage::kOther);
+  timing_.utime = pose_.utime;
+  timing_.seq = pose_.seq;
+  timing_.received_utime = received_us;
+  timing_.published_utime = context_.clock->NowUs();
+  FillTiming(timer_, &timing_);
+  timing_.latency_ms = context_.live
+                           ? 1e-3 * static_cast<double>(timing_.published_utime - pose_.utime)
+                           : timing_.total_ms;
+  context_.bus->Publish(config_.channels.timing, timing_);
+}
+
+void RecogniserService::PublishPopulation(std::int64_t utime_us) {
+  population_.utime = utime_us;
+  population_.generation = estimator_->total_generations();
+  FillPopulation(estimator_->population(), &population_);
+  context_.bus->Publish(config_.channels.population, population_);
+}
+
+// Counts pairs that never reached us, by the pairs' own numbers.
+void RecogniserService::TellMissing(const images_t& message) {
+  if (message.images.empty()) return;
+  const auto seq = FindMetadata(message.images[0], "seq");
+  if (seq && last_image_seq_ && *seq > *last_image_seq_ + 1) {
+    context_.status->Dropped(*seq - *last_image_seq_ - 1);
+  }
+  last_image_seq_ = seq;
+}
+
+void RecogniserService::UpdateStatus() {
+  context_.status->SetCondition("motion", ego_motion_.missing()
+                                              ? "no " + config_.channels.arm_state + " or " +
+                                                    config_.channels.camera_pose +
+                                                    ": going on without feedforward"
+                                              : "");
+  context_.status->SetCounter("pairs_without_motion", pairs_without_motion_);
+  context_.status->SetCounter("pairs_with_extrapolated_motion", extrapolated_);
+}
+
+}  // namespace visavis

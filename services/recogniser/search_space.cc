@@ -1,0 +1,56 @@
+#include "services/recogniser/search_space.h"
+
+#include <cmath>
+
+#include "common/config/config_error.h"
+
+namespace visavis {
+namespace {
+
+// The nearest that a head's centre may come to a camera: the model must lie in front of it.
+constexpr double kMinDepthM = 0.3;
+
+}  // namespace
+
+void SearchSpaceConfig::ValidateOrThrow(const std::string& prefix) const {
+  const auto require = [&](double min, double max, const char* min_key, const char* max_key) {
+    if (!(max - min >= 10)) {
+      throw FieldError(prefix + max_key, std::to_string(max),
+                       "must exceed " + prefix + min_key + " by 10 mm");
+    }
+  };
+  require(min_x_mm, max_x_mm, "min_x_mm", "max_x_mm");
+  require(min_y_mm, max_y_mm, "min_y_mm", "max_y_mm");
+  require(min_z_mm, max_z_mm, "min_z_mm", "max_z_mm");
+}
+
+SearchSpace SearchSpace::FromConfig(const SearchSpaceConfig& config) {
+  SearchSpaceConfig c = config.preset == "custom" ? config : SearchSpaceConfig{};
+  if (config.preset == "paper") {
+    c.min_x_mm = c.min_y_mm = -100;
+    c.max_x_mm = c.max_y_mm = 100;
+  }
+  const double angle = c.max_angle_deg * M_PI / 180;
+  SearchSpace space;
+  space.min << c.min_x_mm / 1000, c.min_y_mm / 1000, c.min_z_mm / 1000, -angle, -angle, -angle;
+  space.max << c.max_x_mm / 1000, c.max_y_mm / 1000, c.max_z_mm / 1000, angle, angle, angle;
+  return space;
+}
+
+SearchSpace SearchSpace::CentredOn(const Eigen::Vector3d& p_CM) const {
+  SearchSpace moved = *this;
+  const Eigen::Vector3d half = 0.5 * range().head<3>();
+  moved.min.head<3>() = p_CM - half;
+  moved.max.head<3>() = p_CM + half;
+  if (moved.min[2] < kMinDepthM) {
+    moved.max[2] += kMinDepthM - moved.min[2];
+    moved.min[2] = kMinDepthM;
+  }
+  return moved;
+}
+
+bool Recentres(const SearchSpaceConfig& config) {
+  return config.preset == "custom" ? config.recentre : config.preset == "wide";
+}
+
+}  // namespace visavis

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+
+#include "common/config/rule.h"
+#include "common/geometry/head_angles.h"
+
+namespace visavis {
+
+/// Range of phi = [t_x t_y t_z Phi theta psi] that genes can express.
+struct SearchSpaceConfig {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("preset", &preset, OneOf({"wide", "paper", "custom"}));
+    a->Visit("min_x_mm", &min_x_mm, InRange(-3000.0, 3000.0, "mm"));
+    a->Visit("max_x_mm", &max_x_mm, InRange(-3000.0, 3000.0, "mm"));
+    a->Visit("min_y_mm", &min_y_mm, InRange(-3000.0, 3000.0, "mm"));
+    a->Visit("max_y_mm", &max_y_mm, InRange(-3000.0, 3000.0, "mm"));
+    a->Visit("min_z_mm", &min_z_mm, InRange(300.0, 5000.0, "mm"));
+    a->Visit("max_z_mm", &max_z_mm, InRange(300.0, 5000.0, "mm"));
+    a->Visit("max_angle_deg", &max_angle_deg, InRange(1.0, 80.0, "deg"));
+    a->Visit("recentre", &recentre);
+  }
+  /// @throws FieldError, keys under @p prefix.
+  void ValidateOrThrow(const std::string& prefix) const;
+
+  /// wide: +-200 mm, 900 to 1200 mm, +-20 deg, recentred on the head while TRACKING. paper: the
+  /// published +-100 mm, fixed. custom: the keys below.
+  std::string preset{"wide"};
+  double min_x_mm{-200}, max_x_mm{200};
+  double min_y_mm{-200}, max_y_mm{200};
+  double min_z_mm{900}, max_z_mm{1200};
+  double max_angle_deg{20};  ///< each of Phi, theta, psi within +- this
+  bool recentre{true};       ///< custom: move the position's range with the tracked head
+};
+
+/// The box of poses that the GA searches.
+struct SearchSpace {
+  Vector6d min, max;  ///< m, rad
+
+  static SearchSpace FromConfig(const SearchSpaceConfig& config);
+
+  Vector6d range() const { return max - min; }
+  Vector6d Clamp(const Vector6d& phi) const { return phi.cwiseMax(min).cwiseMin(max); }
+  bool Contains(const Vector6d& phi) const {
+    return (phi.array() >= min.array()).all() && (phi.array() <= max.array()).all();
+  }
+  /// The same extent, its positions centred on @p p_CM [m]; the angles stay.
+  SearchSpace CentredOn(const Eigen::Vector3d& p_CM) const;
+};
+
+/// Whether the configured space follows the tracked head.
+bool Recentres(const SearchSpaceConfig& config);
+
+}  // namespace visavis
