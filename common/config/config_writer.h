@@ -2,7 +2,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <charconv>
 #include <string>
+#include <type_traits>
 
 #include "common/config/rule.h"
 
@@ -19,7 +21,7 @@ class ConfigWriter {
       value->Serialize(&writer);
       node_[key] = writer.node_;
     } else {
-      node_[key] = *value;
+      node_[key] = Plain(*value);
     }
   }
   template <typename T>
@@ -36,6 +38,17 @@ class ConfigWriter {
   struct HasSerialize<
       T, std::void_t<decltype(std::declval<T&>().Serialize(static_cast<ConfigWriter*>(nullptr)))>>
       : std::true_type {};
+
+  // A number by its shortest text that reads back the same.
+  static std::string Plain(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    return {text, end};
+  }
+  template <typename T>
+  static const T& Plain(const T& value) {
+    return value;
+  }
 
   YAML::Node node_{YAML::NodeType::Map};
 };
