@@ -27,7 +27,7 @@ class Writer {
       if (!element_bytes.empty()) {
         const int count = random_->Index(max_count_ + 1);
         counts[field.name] = count;
-        Length(count, MinEncodedSize(schema_, field.type), element_bytes);
+        Length(count, MinEncodedSize(schema_, field.type), false, element_bytes);
         continue;
       }
       int elements = 1;
@@ -52,15 +52,16 @@ class Writer {
     return bytes;
   }
 
-  void Length(int value, int num_bytes, std::vector<int> element_bytes) {
-    message.lengths.push_back({message.bytes.size(), num_bytes, std::move(element_bytes)});
+  void Length(int value, int num_bytes, bool is_string, std::vector<int> element_bytes) {
+    message.lengths.push_back(
+        {message.bytes.size(), num_bytes, is_string, std::move(element_bytes)});
     Append(static_cast<std::uint64_t>(value), num_bytes, &message.bytes);
   }
 
   void Element(const std::string& type) {
     if (type == "string") {
       const int letters = random_->Index(21);
-      Length(letters + 1, 4, {1});
+      Length(letters + 1, 4, true, {1});
       for (int i = 0; i < letters; ++i) Append('a' + random_->Index(26), 1, &message.bytes);
       Append(0, 1, &message.bytes);
     } else if (IsPrimitive(type)) {

@@ -12,10 +12,11 @@ namespace visavis {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Where a length stands in a message's bytes.
+/// Where a length stands in a message's bytes, and what it counts.
 struct WireLength {
   std::size_t offset;  ///< of the first of its bytes
   int num_bytes;       ///< 1, 2, 4 or 8; big-endian, signed
+  bool is_string;      ///< a string's, its NUL included; else an array's count
   /// Least bytes of one more element: of each array with this count, and of all together; 1: a
   /// string.
   std::vector<int> element_bytes;
