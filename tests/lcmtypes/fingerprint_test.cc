@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,10 +11,6 @@
 
 namespace visavis {
 namespace {
-
-LcmSchema Schema() {
-  return ReadLcmFolder(std::string(std::getenv("VISAVIS_SOURCE_DIR")) + "/lcmtypes");
-}
 
 template <typename... T>
 struct TypeNames {
@@ -45,7 +40,7 @@ TEST(FingerprintTest, PixelFormatsEqualBotCores) {
 
 TEST(FingerprintTest, EveryLcmFileIsBuilt) {
   std::set<std::string> files;
-  for (const auto& [name, message] : Schema()) files.insert(name);
+  for (const auto& [name, message] : ReadProjectSchema()) files.insert(name);
   EXPECT_EQ(AllTypes<TypeNames>().names, files);
 }
 
@@ -54,15 +49,16 @@ class EveryTypeTest : public ::testing::Test {};
 TYPED_TEST_SUITE(EveryTypeTest, AllTypes<::testing::Types>);
 
 TYPED_TEST(EveryTypeTest, FingerprintFollowsFromTheFile) {
-  EXPECT_EQ(TypeParam::getHash(), Fingerprint(Schema(), TypeParam::getTypeName()));
+  EXPECT_EQ(TypeParam::getHash(), Fingerprint(ReadProjectSchema(), TypeParam::getTypeName()));
 }
 
 TYPED_TEST(EveryTypeTest, ShortestMessageIsAsLongAsTheFileSays) {
-  EXPECT_EQ(TypeParam{}.getEncodedSize(), 8 + MinEncodedSize(Schema(), TypeParam::getTypeName()));
+  EXPECT_EQ(TypeParam{}.getEncodedSize(),
+            8 + MinEncodedSize(ReadProjectSchema(), TypeParam::getTypeName()));
 }
 
 TEST(FingerprintTest, IgnoresNamesOfTypesAndKeepsNamesOfFields) {
-  LcmSchema schema = Schema();
+  LcmSchema schema = ReadProjectSchema();
   const std::int64_t before = Fingerprint(schema, "images_t");
   schema["picture_t"] = schema["image_t"];
   schema["images_t"].fields[3].type = "picture_t";

@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <stdexcept>
@@ -38,11 +37,10 @@ std::string RangeFault(const LcmField& field) {
 }
 
 TEST(LcmFileTest, EveryStructAndFieldSaysUnitAndRange) {
-  const std::string folder = std::string(std::getenv("VISAVIS_SOURCE_DIR")) + "/lcmtypes";
-  const LcmSchema schema = ReadLcmFolder(folder);
+  const LcmSchema schema = ReadProjectSchema();
   EXPECT_GE(schema.size(), 15u);
   for (const auto& [name, message] : schema) {
-    EXPECT_NE(message.comment, "") << folder << "/" << name << ".lcm: must begin with a comment";
+    EXPECT_NE(message.comment, "") << "lcmtypes/" << name << ".lcm: must begin with a comment";
     for (const LcmField& field : message.fields) {
       const std::string place = name + ".lcm:" + std::to_string(field.line) + ": " + field.name;
       EXPECT_EQ(CommentFault(field), "") << place;

@@ -1,5 +1,6 @@
 #include "tests/support/lcm_schema.h"
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -86,6 +87,12 @@ LcmSchema ReadLcmFolder(const std::string& folder) {
     schema[read.name] = std::move(read);
   }
   return schema;
+}
+
+LcmSchema ReadProjectSchema() {
+  const char* source = std::getenv("VISAVIS_SOURCE_DIR");
+  if (source == nullptr) throw std::runtime_error("VISAVIS_SOURCE_DIR: must be set; ctest sets it");
+  return ReadLcmFolder(std::string(source) + "/lcmtypes");
 }
 
 bool IsPrimitive(const std::string& type) { return kPrimitiveSizes.count(type) > 0; }

@@ -33,6 +33,10 @@ LcmStruct ReadLcmFile(const std::string& file);
 /// Reads every .lcm file of @p folder.
 LcmSchema ReadLcmFolder(const std::string& folder);
 
+/// Reads the project's own lcmtypes/. @throws std::runtime_error where VISAVIS_SOURCE_DIR, which
+/// CTest sets, does not say where that is.
+LcmSchema ReadProjectSchema();
+
 /// Whether @p type is one of LCM's own and not a struct.
 bool IsPrimitive(const std::string& type);
 
