@@ -67,7 +67,7 @@ Build() {
     grep -A8 -m3 -E 'CMake Error|not found' "$log" >&2 || tail -20 "$log" >&2
     Fail "CMake could not configure, see $log"
   fi
-  Say "building with $jobs at once, the whole output in $log"
+  Say "building with $jobs at once, the output in $log"
   last_tenth=-1
   if ! cmake --build --preset "$preset" --parallel "$jobs" 2>&1 | tee -a "$log" |
     while IFS= read -r line; do
@@ -78,4 +78,11 @@ Build() {
     sed -n '/^FAILED/,$p' "$log" | head -60 >&2
     Fail "the $preset build failed, see $log"
   fi
+}
+
+# Runs a preset's tests: RunTests PRESET [CTEST ARGUMENTS...]. No test reads from a terminal.
+RunTests() {
+  local preset=$1
+  shift
+  ctest --preset "$preset" --parallel "$(nproc)" --no-tests=error "$@" </dev/null
 }
