@@ -13,11 +13,13 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
   ServiceFlags flags;
   CLI::App app(traits.description, "visavis-" + traits.name);
   app.set_version_flag("--version", "visavis-" + traits.name + " " + kVersion);
-  app.add_option("--config", flags.config_file, "YAML file; defaults where it says nothing");
-  app.add_option("--set", flags.overrides, "KEY=VALUE over the configuration, e.g. seed=3")
-      ->allow_extra_args(false);
-  app.add_flag("--check-config", flags.check_config, "check the configuration and exit");
-  app.add_flag("--print-config", flags.print_config, "print the configuration in force and exit");
+  if (traits.has_config) {
+    app.add_option("--config", flags.config_file, "YAML file; defaults where it says nothing");
+    app.add_option("--set", flags.overrides, "KEY=VALUE over the configuration, e.g. seed=3")
+        ->allow_extra_args(false);
+    app.add_flag("--check-config", flags.check_config, "check the configuration and exit");
+    app.add_flag("--print-config", flags.print_config, "print the configuration in force and exit");
+  }
   app.add_option("--lcm-url", flags.lcm_url,
                  std::string("LCM provider [LCM_DEFAULT_URL, then ") + kDefaultLcmUrl + "]");
   app.add_option("--prefix", flags.prefix, "goes before every channel, e.g. ROBOT1_");

@@ -18,6 +18,7 @@ struct FlagAlias {
 struct ServiceTraits {
   std::string name;                ///< executable's name without visavis-
   std::string description;         ///< one line for --help
+  bool has_config{true};           ///< offers --config, --set, --check-config, --print-config
   bool replays{false};             ///< offers --replay IN --record OUT
   bool runs_fast{false};           ///< offers --fast --record OUT: no network, as fast as it can
   std::vector<FlagAlias> aliases;  ///< further flags
