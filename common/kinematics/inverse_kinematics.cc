@@ -9,22 +9,24 @@
 #include <sstream>
 
 #include "common/core/check.h"
+#include "common/geometry/head_angles.h"
 #include "common/kinematics/arm_chain.h"
 
 namespace visavis {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / M_PI;
-constexpr int kMaxRounds = 100;
-constexpr double kConverged = 1e-10;  // [rad or m] largest step of a joint
-constexpr double kMaxNullStep = 0.3;  // [rad or m] a round; larger ones leave the linear range
+constexpr int kMaxRounds = 200;
+constexpr double kConverged = 1e-11;  // [rad or m] largest step of a joint
+constexpr double kMaxStep = 0.2;      // [rad or m] a round; larger ones leave the linear range
 
 /// A radian weighs as much as a metre: both residuals matter and are of one size on such arms.
 Eigen::Matrix<double, 6, 1> Weights() { return Eigen::Matrix<double, 6, 1>::Ones(); }
 
-/// Part of @p dq that moves no hand: (I - J^+ J) dq.
-Eigen::VectorXd NullSpacePart(const Eigen::MatrixXd& J, const Eigen::VectorXd& dq) {
-  return dq - J.completeOrthogonalDecomposition().solve(J * dq);
+/// Scales @p step so that no joint moves by more than kMaxStep.
+Eigen::VectorXd Limited(const Eigen::VectorXd& step) {
+  const double size = step.cwiseAbs().maxCoeff();
+  return size > kMaxStep ? Eigen::VectorXd(step * (kMaxStep / size)) : step;
 }
 
 }  // namespace
@@ -42,13 +44,45 @@ struct InverseKinematics::Impl {
   Eigen::VectorXd SolvePose(const KDL::Frame& X_BH, const Eigen::VectorXd& q) {
     kdl_start.data = q;
     solver.CartToJnt(kdl_start, X_BH, kdl_result);
-    return kdl_result.data;
+    Eigen::VectorXd result = kdl_result.data;
+    for (int i = 0; i < arm.num_joints(); ++i) {  // far from the start it may have wound up
+      const ArmJoint& joint = arm.joints()[i];
+      if (joint.type != JointType::kRevolute) continue;
+      result[i] -=
+          2 * M_PI * std::round((result[i] - (joint.lower + joint.upper) / 2) / (2 * M_PI));
+    }
+    return result;
   }
 
-  void Measure(const RigidTransform& X_BH, Solution* solution) const {
-    const RigidTransform X_reached = arm.ForwardKinematics(solution->q);
-    solution->position_error_m = (X_reached.translation() - X_BH.translation()).norm();
-    solution->angle_error_rad = LogRotation(X_reached.linear().transpose() * X_BH.linear()).norm();
+  /// Pose error at q, in B: position over rotation vector.
+  Vector6d Error(const RigidTransform& X_BH, const Eigen::VectorXd& q) const {
+    const RigidTransform X = arm.ForwardKinematics(q);
+    Vector6d error;
+    error << X_BH.translation() - X.translation(),
+        LogRotation(X_BH.linear() * X.linear().transpose());
+    return error;
+  }
+
+  Solution Judge(const RigidTransform& X_BH, const Eigen::VectorXd& q) const {
+    const Vector6d error = Error(X_BH, q);
+    Solution solution{q, error.head<3>().norm(), error.tail<3>().norm(), ""};
+    solution.problem = ProblemOf(solution);
+    return solution;
+  }
+
+  /// Newton's method from a solution: J^+ of what KDL leaves (its angles have a dead zone of 1e-6)
+  /// plus the way to the preferred position along (I - J^+ J), the motions that keep the pose.
+  Eigen::VectorXd Refine(const RigidTransform& X_BH, Eigen::VectorXd q) const {
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const Eigen::MatrixXd J = arm.Jacobian(q);
+      const auto decomposition = J.completeOrthogonalDecomposition();
+      const Eigen::VectorXd wish = q_preferred - q;
+      const Eigen::VectorXd step = Limited(decomposition.solve(Error(X_BH, q))) +
+                                   Limited(wish - decomposition.solve(J * wish));
+      q += step;
+      if (step.cwiseAbs().maxCoeff() < kConverged) break;
+    }
+    return q;
   }
 
   std::string ProblemOf(const Solution& solution) const {
@@ -89,27 +123,10 @@ InverseKinematics::~InverseKinematics() = default;
 InverseKinematics::Solution InverseKinematics::Solve(
     const RigidTransform& X_BH, const Eigen::Ref<const Eigen::VectorXd>& q_start) {
   VISAVIS_THROW_UNLESS(q_start.size() == impl_->arm.num_joints(), q_start.size());
-  const KDL::Frame goal = ToKdl(X_BH);
-  Eigen::VectorXd q = impl_->SolvePose(goal, q_start);
-  Solution solution{q, 0, 0, ""};
-  impl_->Measure(X_BH, &solution);
-  solution.problem = impl_->ProblemOf(solution);
-  const bool reached = solution.position_error_m <= impl_->options.max_position_error_m &&
-                       solution.angle_error_rad <= impl_->options.max_angle_error_rad;
-  // Towards the preferred position along the poses' own joint motions, and back onto the pose.
-  for (int round = 0; reached && round < kMaxRounds; ++round) {
-    Eigen::VectorXd step = NullSpacePart(impl_->arm.Jacobian(q), impl_->q_preferred - q);
-    const double size = step.cwiseAbs().maxCoeff();
-    if (size < kConverged) break;
-    if (size > kMaxNullStep) step *= kMaxNullStep / size;
-    q = impl_->SolvePose(goal, q + step);
-    Solution moved{q, 0, 0, ""};
-    impl_->Measure(X_BH, &moved);
-    moved.problem = impl_->ProblemOf(moved);
-    if (!moved.ok() && solution.ok()) break;
-    solution = moved;
-  }
-  return solution;
+  const Eigen::VectorXd q = impl_->SolvePose(ToKdl(X_BH), q_start);
+  const Solution found = impl_->Judge(X_BH, q);
+  const Solution refined = impl_->Judge(X_BH, impl_->Refine(X_BH, q));
+  return refined.ok() || !found.ok() ? refined : found;
 }
 
 JointPath InverseKinematics::SolvePath(const std::vector<RigidTransform>& X_BH) {
