@@ -126,14 +126,16 @@ std::int64_t CsvTable::Count(int row, int column) const {
   return value;
 }
 
+std::string CsvTable::PlaceOf(int row) const {
+  return path_ + ":" + std::to_string(lines_.at(static_cast<std::size_t>(row)));
+}
+
 void CsvTable::Refuse(int row, int column, const std::string& rule) const {
   const std::string_view cell = Text(row, column);
   std::string shown = cell.empty() ? "empty" : std::string(cell.substr(0, kMaxShown));
   if (cell.size() > kMaxShown) shown += "...";
-  throw std::invalid_argument(path_ + ":" +
-                              std::to_string(lines_.at(static_cast<std::size_t>(row))) + ": " +
-                              columns_.at(static_cast<std::size_t>(column)) + ": " + shown + ": " +
-                              rule);
+  throw std::invalid_argument(PlaceOf(row) + ": " + columns_.at(static_cast<std::size_t>(column)) +
+                              ": " + shown + ": " + rule);
 }
 
 }  // namespace visavis

@@ -34,6 +34,9 @@ class CsvTable {
   /// @throws std::invalid_argument unless the cell is a whole number >= 0.
   std::int64_t Count(int row, int column) const;
 
+  /// "FILE:LINE" of a row.
+  std::string PlaceOf(int row) const;
+
   /// Refuses a cell. @throws std::invalid_argument "FILE:LINE: COLUMN: VALUE: @p rule", always.
   [[noreturn]] void Refuse(int row, int column, const std::string& rule) const;
 

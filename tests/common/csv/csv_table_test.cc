@@ -1,9 +1,9 @@
 #include "common/csv/csv_table.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "tests/support/temporary_folder.h"
 
