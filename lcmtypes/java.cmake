@@ -10,7 +10,7 @@ if(NOT VISAVIS_JAVA)
   message(STATUS "Types jar for lcm-spy: not built, VISAVIS_JAVA is off")
 elseif(NOT JAVAC OR NOT JAR OR NOT LCM_JAR)
   message(STATUS "Types jar for lcm-spy: not built, it needs: "
-    "sudo apt-get install openjdk-17-jdk-headless liblcm-java")
+    "sudo apt-get install default-jdk-headless liblcm-java")
 else()
   set(VISAVIS_TYPES_JAR_BUILT TRUE)
   set(java_dir ${CMAKE_CURRENT_BINARY_DIR}/java)

@@ -16,7 +16,7 @@
 namespace visavis {
 namespace {
 
-constexpr int kMutations = 400;
+constexpr int kMutations = 150;
 constexpr rlim_t kLittleMemory = 200 << 20;      // so that huge arrays fail fast
 constexpr rlim_t kMuchMemory = rlim_t{4} << 30;  // address space for a string of 2 GB
 

@@ -11,7 +11,7 @@ failures=0
 # check accepted|refused FIELDS...
 check() {
   wanted=$1; shift
-  rm -rf "$folder"/*
+  rm -rf "${folder:?}"/*
   echo "package p; struct a_t { int32_t n; int8_t m; $* } struct b_t { int8_t x; }" > "$folder/a.lcm"
   "$lcm_gen" --cpp --cpp-std=c++11 --cpp-hpath "$folder" "$folder/a.lcm" || exit 1
   "$awk" -f "$harden" "$folder/p/a_t.hpp" > "$folder/out.hpp" 2> "$folder/error"

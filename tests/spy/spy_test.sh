@@ -9,11 +9,11 @@ url="udpm://239.255.76.67:$port?ttl=0"
 
 skip() { echo "skipped: $*"; exit 77; }
 command -v Xvfb > /dev/null || skip "Xvfb is missing: sudo apt-get install xvfb"
-java=$(command -v java) || skip "java is missing: sudo apt-get install openjdk-17-jre"
+java=$(command -v java) || skip "java is missing: sudo apt-get install default-jre"
 [ -e "$(dirname "$(dirname "$(readlink -f "$java")")")/lib/libawt_xawt.so" ] ||
-  skip "a Java with windows is missing: sudo apt-get install openjdk-17-jre"
+  skip "a Java with windows is missing: sudo apt-get install default-jre"
 [ -e /usr/share/java/jchart2d.jar ] || skip "jchart2d.jar is missing: sudo apt-get install libjchart2d-java"
-[ -e "$types_jar" ] || skip "$types_jar was not built: sudo apt-get install openjdk-17-jdk-headless liblcm-java"
+[ -e "$types_jar" ] || skip "$types_jar was not built: sudo apt-get install default-jdk-headless liblcm-java"
 
 folder=$(mktemp -d) || exit 1
 pids=
@@ -38,7 +38,7 @@ wait_for "$folder/display"
 wait_for "$folder/expected"
 DISPLAY=:$(cat "$folder/display")
 export DISPLAY
-if [ $mode = player ]; then
+if [ "$mode" = player ]; then
   set -- --player "$folder/every_type.lcm"
 else
   set -- --jar "$types_jar"
