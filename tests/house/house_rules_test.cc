@@ -34,7 +34,7 @@ int ForEachFile(const std::vector<std::string>& folders, const std::set<std::str
   for (const std::string& folder : folders) {
     for (const auto& entry : fs::recursive_directory_iterator(Root() + "/" + folder)) {
       if (!entry.is_regular_file() || endings.count(entry.path().extension()) == 0) continue;
-      visit(fs::relative(entry.path(), Root()).generic_string(), ReadText(entry.path()));
+      visit(entry.path().lexically_relative(Root()).generic_string(), ReadText(entry.path()));
       ++num_files;
     }
   }
