@@ -46,12 +46,13 @@ PublishedEstimator::PublishedEstimator(const Settings& settings, const HeadModel
 void PublishedEstimator::Reset() {
   monitor_.Reset();
   estimate_ = Estimate{};
+  centre_.reset();
   ga_.SetSpace(settings_.space);
   ga_.Restart();
   const StartConfig& start = settings_.start;
   if (start.phi_mm_deg.empty()) return;
   const Vector6d phi = PhiFromMmDeg(start.phi_mm_deg);
-  if (settings_.recentre) ga_.SetSpace(settings_.space.CentredOn(phi.head<3>()));
+  CentreOn(phi.head<3>());
   Vector6d spread;
   spread << Eigen::Vector3d::Constant(start.spread_mm * 1e-3),
       Eigen::Vector3d::Constant(start.spread_deg * M_PI / 180);
@@ -60,7 +61,14 @@ void PublishedEstimator::Reset() {
 
 void PublishedEstimator::SetSearchSpace(const SearchSpace& space) {
   settings_.space = space;
+  centre_.reset();
   ga_.SetSpace(space);
+}
+
+void PublishedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
+  if (!settings_.recentre) return;
+  centre_ = p_CM;
+  ga_.SetSpace(settings_.space.CentredOn(p_CM));
 }
 
 StereoMaps PublishedEstimator::BuildMaps(const StereoFrame& frame) {
@@ -79,6 +87,7 @@ StereoMaps PublishedEstimator::BuildMaps(const StereoFrame& frame) {
 // Fig. 3: all individuals are moved against the camera's motion. @return what was used.
 FeedforwardMode PublishedEstimator::Feedforward(const CameraStep& step) {
   if (!step.known) return FeedforwardMode::kNone;
+  if (centre_ && settings_.feedforward != FeedforwardMode::kNone) CentreOn(step.X_C2C1 * *centre_);
   switch (settings_.feedforward) {
     case FeedforwardMode::kNone:
       break;
@@ -117,6 +126,7 @@ void PublishedEstimator::FollowHead() {
     if (settings_.recentre) ga_.SetSpace(settings_.space.CentredOn(estimate_.X_CM->translation()));
   } else if (estimate_.status == TrackStatus::kLost &&
              monitor_.frames_in_status() % kRestartAfterLostFrames == kRestartAfterLostFrames - 1) {
+    centre_.reset();
     ga_.SetSpace(settings_.space);
     ga_.Restart();
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/config/rule.h"
@@ -69,11 +70,15 @@ class PublishedEstimator final : public Estimator {
   FeedforwardMode Feedforward(const CameraStep& step);
   void Evolve(const StereoMaps& maps);
   void FollowHead();
+  void CentreOn(const Eigen::Vector3d& p_CM);
 
   Settings settings_;
   StereoFitness fitness_;
   PackedMap right_map_, left_map_;
   GeneticAlgorithm ga_;
+  /// Where the search space is centred once a head was found or its pose given; moves with the
+  /// camera. Nothing: the space is where the configuration puts it.
+  std::optional<Eigen::Vector3d> centre_;
   TrackMonitor monitor_;
   Estimate estimate_;
   std::vector<Individual> reported_;  // as evaluated, before reproduction
