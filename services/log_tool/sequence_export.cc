@@ -8,8 +8,8 @@
 #include "common/convert/image_message.h"
 #include "common/convert/message_error.h"
 #include "common/image/image_decoder.h"
+#include "common/recording/log_contents.h"
 #include "common/rigs/rig_file.h"
-#include "services/log_tool/log_contents.h"
 #include "services/log_tool/picture_file.h"
 #include "services/log_tool/sequence_tables.h"
 

@@ -10,6 +10,7 @@
 #include "common/convert/image_message.h"
 #include "common/convert/pose_message.h"
 #include "common/convert/rig_message.h"
+#include "common/core/provisional_file.h"
 #include "common/eventlog/event_log_writer.h"
 #include "services/log_tool/picture_file.h"
 #include "visavis/arm_state_t.hpp"
@@ -146,28 +147,6 @@ class Importer {
   images_t images_message_{};
   arm_state_t arm_message_{};
   std::vector<std::uint8_t> encoded_;
-};
-
-/// A file under a provisional name that goes unless it is given its own.
-class ProvisionalFile {
- public:
-  explicit ProvisionalFile(std::string name) : name_(std::move(name)) {}
-  ~ProvisionalFile() {
-    std::error_code ignored;
-    if (!kept_) std::filesystem::remove(provisional_name(), ignored);
-  }
-  ProvisionalFile(const ProvisionalFile&) = delete;
-  ProvisionalFile& operator=(const ProvisionalFile&) = delete;
-
-  std::string provisional_name() const { return name_ + ".part"; }
-  void Keep() {
-    std::filesystem::rename(provisional_name(), name_);
-    kept_ = true;
-  }
-
- private:
-  const std::string name_;
-  bool kept_{false};
 };
 
 }  // namespace

@@ -18,8 +18,8 @@ struct ImportSummary {
 /// STEREO_RIG comes first and once a second; at equal times CAMERA_POSE, ARM_STATE and
 /// HEAD_POSE_TRUTH precede STEREO_IMAGES. An image's metadata `seq` is the frame's number.
 ///
-/// The log appears under its name only when it is whole; until then it is @p log + ".part", which a
-/// failure removes. @p prefix goes before every channel.
+/// The log appears under its name only when it is whole (ProvisionalFile). @p prefix goes before
+/// every channel.
 /// @throws std::invalid_argument for a bad folder (see ReadRecordedSequence) or picture,
 /// std::runtime_error where the log cannot be written.
 ImportSummary ImportSequence(const std::string& folder, const std::string& log,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "services/log_tool/log_contents.h"
+#include "common/recording/log_contents.h"
 
 namespace visavis {
 

@@ -1,4 +1,4 @@
-#include "services/log_tool/log_contents.h"
+#include "common/recording/log_contents.h"
 
 #include <stdexcept>
 
@@ -39,12 +39,12 @@ LogContents ReadLog(const std::string& path, const std::string& prefix,
   rigid_transform_t pose;
   arm_state_t arm;
   head_pose_t head;
+  recogniser_timing_t timing;
   const auto take = [&](const LogEvent& event) {
     if (event.channel.compare(0, prefix.size(), prefix) != 0) return;
     const std::string channel = event.channel.substr(prefix.size());
     if (channel == kStereoImagesChannel) {
-      on_images(Decode(event, &images));
-      ++contents.num_images;
+      if (on_images) on_images(Decode(event, &images));
     } else if (channel == kStereoRigChannel) {
       if (!contents.rig) contents.rig = FromMessage(Decode(event, &rig));
     } else if (channel == kCameraPoseChannel) {
@@ -55,6 +55,8 @@ LogContents ReadLog(const std::string& path, const std::string& prefix,
       contents.truth.push_back(ToSample(Decode(event, &head)));
     } else if (channel == kHeadPoseChannel) {
       contents.head_poses.push_back(Decode(event, &head));
+    } else if (channel == kRecogniserTimingChannel) {
+      contents.timings.push_back(Decode(event, &timing));
     }
   };
 
