@@ -12,6 +12,9 @@ namespace {
 constexpr int kInRings = 8, kInPerRing = 24;
 constexpr int kOutRings = 2, kOutPerRing = 48;
 constexpr int kPointsAlong = 8;  // along each strip of a brow or an eye
+// F_out's strips, in half heights of a brow and in scales of an eye.
+constexpr double kBrowOut = 2.2;
+constexpr double kEyeOut[] = {1.35, 1.6};
 
 double Radians(double deg) { return deg * M_PI / 180; }
 
@@ -21,18 +24,28 @@ void HeadModelConfig::ValidateOrThrow(const std::string& prefix) const {
   const auto require = [&](bool holds, const char* key, double value, const char* rule) {
     if (!holds) throw FieldError(prefix + key, std::to_string(value), rule);
   };
-  const double smallest_mm =
-      shape == "sphere" ? radius_mm : std::min(semi_axis_x_mm, semi_axis_y_mm);
+  const bool sphere = shape == "sphere";
+  const double a_mm = sphere ? radius_mm : semi_axis_x_mm;
+  const double b_mm = sphere ? radius_mm : semi_axis_y_mm;
+  const double c_mm = sphere ? radius_mm : semi_axis_z_mm;
+  // Whether the front of the head, short of its outline, reaches so far from the middle.
+  const auto reaches = [&](double x_mm, double y_mm) {
+    return std::hypot(x_mm / a_mm, y_mm / b_mm) < 0.9;
+  };
   require(brow_outer_x_mm > brow_inner_x_mm, "brow_outer_x_mm", brow_outer_x_mm,
           "must exceed brow_inner_x_mm");
   require(brow_y_mm < eye_y_mm, "brow_y_mm", brow_y_mm,
           "must lie above the eye: below eye_y_mm in value");
-  require(std::hypot(eye_x_mm + 2 * eye_half_width_mm, eye_y_mm) < 0.9 * smallest_mm, "eye_x_mm",
-          eye_x_mm, "the eye must lie on the front of the head");
-  require(std::hypot(brow_outer_x_mm, brow_y_mm) < 0.9 * smallest_mm, "brow_outer_x_mm",
-          brow_outer_x_mm, "the brow must lie on the front of the head");
-  require(std::abs(hair_offset_mm) < smallest_mm, "hair_offset_mm", hair_offset_mm,
-          "the plane must cut the head");
+  require(reaches(eye_x_mm + kEyeOut[1] * eye_half_width_mm,
+                  std::abs(eye_y_mm) + kEyeOut[1] * eye_half_height_mm),
+          "eye_x_mm", eye_x_mm, "the eye must lie on the front of the head");
+  const double brow_reach_mm = std::max(std::abs(brow_y_mm), std::abs(brow_y_mm - brow_arch_mm)) +
+                               kBrowOut * brow_half_height_mm;
+  require(reaches(brow_outer_x_mm, brow_reach_mm), "brow_outer_x_mm", brow_outer_x_mm,
+          "the brow must lie on the front of the head");
+  const double tilt = Radians(hair_tilt_deg);
+  require(std::abs(hair_offset_mm) < std::hypot(b_mm * std::cos(tilt), c_mm * std::sin(tilt)),
+          "hair_offset_mm", hair_offset_mm, "the plane must cut the head");
 }
 
 HeadModel::HeadModel(const HeadModelConfig& config) {
@@ -105,8 +118,8 @@ void HeadModel::MakeFeatures(const HeadModelConfig& c) {
   }
   num_feature_in_ = static_cast<int>(feature_x.size());
   for (const double side : {-1.0, 1.0}) {
-    for (const double dy : {-2.2, 2.2}) brow(side, dy * c.brow_half_height_mm);
-    for (const double scale : {1.35, 1.6}) eye(side, scale);
+    for (const double dy : {-kBrowOut, kBrowOut}) brow(side, dy * c.brow_half_height_mm);
+    for (const double scale : kEyeOut) eye(side, scale);
   }
 }
 
