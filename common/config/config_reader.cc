@@ -46,21 +46,28 @@ Rule<std::string> ChannelPrefix() {
 
 ConfigSource::ConfigSource(const std::string& filename, const std::vector<std::string>& overrides)
     : filename_(filename) {
-  if (!filename.empty()) {
-    try {
-      root_ = YAML::LoadFile(filename);
-    } catch (const YAML::BadFile&) {
-      throw ConfigError(filename + ": cannot be read");
-    } catch (const YAML::ParserException& e) {
-      throw ConfigError(filename + ":" + std::to_string(e.mark.line + 1) +
-                        ": is no YAML: " + e.msg);
-    }
-    if (!root_.IsMap() && !root_.IsNull()) {
-      throw ConfigError(filename + ":1: must be a mapping of keys");
-    }
-  }
+  if (!filename.empty()) Parse([&] { return YAML::LoadFile(filename); });
   if (!root_.IsMap()) root_ = YAML::Node(YAML::NodeType::Map);
   for (const auto& assignment : overrides) Override(assignment);
+}
+
+ConfigSource ConfigSource::FromText(const std::string& text, const std::string& name) {
+  ConfigSource source;
+  source.filename_ = name;
+  source.Parse([&] { return YAML::Load(text); });
+  return source;
+}
+
+void ConfigSource::Parse(const std::function<YAML::Node()>& load) {
+  try {
+    root_ = load();
+  } catch (const YAML::BadFile&) {
+    throw ConfigError(filename_ + ": cannot be read");
+  } catch (const YAML::ParserException& e) {
+    throw ConfigError(filename_ + ":" + std::to_string(e.mark.line + 1) + ": is no YAML: " + e.msg);
+  }
+  if (!root_.IsMap() && !root_.IsNull())
+    throw ConfigError(filename_ + ":1: must be a mapping of keys");
 }
 
 void ConfigSource::Override(const std::string& assignment) {

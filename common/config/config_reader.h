@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -21,6 +22,9 @@ class ConfigSource {
   /// or is no YAML mapping, and for an override without '='.
   ConfigSource(const std::string& filename, const std::vector<std::string>& overrides);
 
+  /// From YAML text; @p name stands for it in errors.
+  static ConfigSource FromText(const std::string& text, const std::string& name);
+
   const YAML::Node& root() const { return root_; }
   const std::string& filename() const { return filename_; }
 
@@ -28,6 +32,8 @@ class ConfigSource {
   std::string PlaceOf(const std::string& dotted_key) const;
 
  private:
+  ConfigSource() = default;
+  void Parse(const std::function<YAML::Node()>& load);
   void Override(const std::string& assignment);
 
   std::string filename_;

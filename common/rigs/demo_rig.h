@@ -3,8 +3,12 @@
 #include <array>
 
 #include "common/geometry/rigid_transform.h"
+#include "common/rigs/rig_description.h"
 
 namespace visavis {
+
+/// demo_rig.yaml with demo_arm.urdf, as compiled in.
+RigDescription DemoRig();
 
 // What demo_rig.yaml and demo_arm.urdf do not say: where the demo's camera and head stand.
 

@@ -77,14 +77,10 @@ struct RigFields {
   bool has_hand_eye{true}, has_arm{true};
 };
 
-std::string ReadText(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FieldError("arm.urdf", path.string(), "cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
+using ReadFile = std::function<std::string(const std::string&)>;
 
 RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
-                          const std::string& filename) {
+                          const ReadFile& read_file) {
   for (const char* key : {"right", "left", "X_CL"}) {
     if (!root[key]) throw FieldError(key, "missing", "must be given");
   }
@@ -92,9 +88,14 @@ RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
   description.rig = {fields.right.camera, fields.left.camera, fields.X_CL.ToTransform("X_CL")};
   if (root["X_HC"]) description.X_HC = fields.X_HC.ToTransform("X_HC");
   if (root["arm"]) {
-    const auto folder = std::filesystem::path(filename).parent_path();
-    description.arm = ArmDescription{ReadText(folder / fields.arm.urdf), fields.arm.base,
-                                     fields.arm.tip, fields.arm.X_WB.ToTransform("arm.X_WB")};
+    std::string urdf;
+    try {
+      urdf = read_file(fields.arm.urdf);
+    } catch (const std::runtime_error&) {
+      throw FieldError("arm.urdf", fields.arm.urdf, "cannot be read");
+    }
+    description.arm = ArmDescription{urdf, fields.arm.base, fields.arm.tip,
+                                     fields.arm.X_WB.ToTransform("arm.X_WB")};
   }
   const auto check = [](const char* key, const auto& validate) {
     try {
@@ -110,19 +111,32 @@ RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
   return description;
 }
 
-}  // namespace
-
-RigDescription LoadRigFile(const std::string& filename) {
-  const ConfigSource source(filename, {});
+RigDescription FromSource(const ConfigSource& source, const ReadFile& read_file) {
   RigFields fields;
   ConfigReader reader(source, source.root(), "");
   fields.Serialize(&reader);
   reader.RejectUnknownKeys();
   try {
-    return FromFields(fields, source.root(), filename);
+    return FromFields(fields, source.root(), read_file);
   } catch (const FieldError& e) {
     throw ConfigError(source.PlaceOf(e.key()) + ": " + e.what());
   }
+}
+
+}  // namespace
+
+RigDescription LoadRigFile(const std::string& filename) {
+  const auto folder = std::filesystem::path(filename).parent_path();
+  return FromSource(ConfigSource(filename, {}), [&](const std::string& name) {
+    std::ifstream file(folder / name, std::ios::binary);
+    if (!file || !std::filesystem::is_regular_file(folder / name)) throw std::runtime_error(name);
+    return std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  });
+}
+
+RigDescription ParseRig(const std::string& text, const std::string& name,
+                        const ReadFile& read_file) {
+  return FromSource(ConfigSource::FromText(text, name), read_file);
 }
 
 void SaveRigFile(const RigDescription& description, const std::string& filename) {

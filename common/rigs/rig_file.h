@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "common/rigs/rig_description.h"
@@ -16,6 +17,11 @@ namespace visavis {
 ///
 /// @throws ConfigError: one line with file, line, key, value and rule.
 RigDescription LoadRigFile(const std::string& filename);
+
+/// Reads the text of a rig.yaml. @param name stands for it in errors. @param read_file gives the
+/// text of the file that arm.urdf names; throws std::runtime_error where there is none.
+RigDescription ParseRig(const std::string& text, const std::string& name,
+                        const std::function<std::string(const std::string&)>& read_file);
 
 /// Writes @p rig as a rig.yaml; the arm's URDF goes into arm.urdf beside it.
 /// @throws std::runtime_error naming the file that cannot be written.

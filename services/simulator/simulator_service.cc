@@ -1,0 +1,175 @@
+#include "services/simulator/simulator_service.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/bus/channels.h"
+#include "common/convert/image_message.h"
+#include "common/convert/pose_message.h"
+#include "common/convert/rig_message.h"
+#include "common/rigs/demo_rig.h"
+#include "common/rigs/rig_file.h"
+
+namespace visavis {
+namespace {
+
+// A simulated log begins here in message time, so that the same scenario has the same bytes.
+constexpr std::int64_t kFastStartUs = 1'000'000'000'000'000;
+
+RigDescription LoadRig(const std::string& file) {
+  RigDescription rig = file.empty() ? DemoRig() : LoadRigFile(file);
+  if (!rig.arm || !rig.X_HC)
+    throw std::invalid_argument("rig_file: " + file + ": must have an arm and X_HC");
+  return rig;
+}
+
+HandEye MakeHandEye(const RigDescription& rig) {
+  return {Arm(rig.arm->urdf, rig.arm->base_link, rig.arm->tip_link), rig.arm->X_WB, *rig.X_HC};
+}
+
+Eigen::VectorXd Posture() {
+  return Eigen::Map<const Eigen::VectorXd>(kDemoArmPosture.data(),
+                                           static_cast<Eigen::Index>(kDemoArmPosture.size()));
+}
+
+}  // namespace
+
+ServiceTraits SimulatorService::Traits() {
+  ServiceTraits traits;
+  traits.name = "simulator";
+  traits.description = "Renders a head before two cameras on an arm, with exact truth";
+  traits.runs_fast = true;
+  traits.aliases = {
+      {"--scenario", "scenario.name", "shuttle_x, orbit_theta, static, moving_head, random_poses"},
+      {"--period", "scenario.period_s", "[s] of shuttle_x and orbit_theta"},
+      {"--subject", "world.subject", "who stands before the cameras, adult_a ..."},
+      {"--seconds", "seconds", "how long; 0: until stopped"},
+      {"--seed", "seed", "of all that is random"}};
+  return traits;
+}
+
+SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceContext& context)
+    : config_(config),
+      context_(context),
+      rig_(LoadRig(config.rig_file)),
+      X_WS_(DemoCameraPose()),
+      scenario_(config.scenario, X_WS_, static_cast<std::uint64_t>(config.seed)),
+      hand_eye_(MakeHandEye(rig_)),
+      trajectory_(hand_eye_, Posture(),
+                  [this](double time_s) { return scenario_.CameraPose(time_s); }),
+      world_(config.world, rig_.rig, static_cast<std::uint64_t>(config.seed)),
+      start_us_(context.live ? context.clock->NowUs() + 100'000 : kFastStartUs),
+      next_rig_us_(start_us_) {
+  rig_message_ = ToMessage(rig_, 0);
+  if (!config_.publish_arm) {
+    rig_message_.has_hand_eye = false;
+    rig_message_.arm_urdf.clear();
+  }
+  arm_state_ = arm_state_t{};
+  for (const ArmJoint& joint : hand_eye_.arm().joints())
+    arm_state_.joint_names.push_back(joint.name);
+  arm_state_.num_joints = static_cast<std::int32_t>(arm_state_.joint_names.size());
+  arm_state_.source = "simulator";
+  arm_state_.clock_state = arm_state_t::CLOCK_SYNCHRONISED;
+  arm_state_.clock_offset_s = 0;
+  images_.n_images = 2;
+  images_.image_types = {images_t::LEFT, images_t::RIGHT};
+  images_.images.resize(2);
+}
+
+SimulatorService::~SimulatorService() = default;
+
+std::int64_t SimulatorService::FrameTime(std::int64_t frame) const {
+  return start_us_ + std::llround(1e6 * static_cast<double>(frame) / config_.frame_rate_hz);
+}
+
+std::int64_t SimulatorService::next_wake_us() const {
+  if (!prepared_) return context_.live ? 0 : FrameTime(frame_);
+  return FrameTime(frame_) + std::llround(1000 * config_.readout_ms);
+}
+
+bool SimulatorService::finished() const {
+  return config_.seconds > 0 && TimeOf(FrameTime(frame_)) >= config_.seconds;
+}
+
+void SimulatorService::Wake() {
+  if (finished()) return;
+  if (!prepared_) PrepareFrame();
+  if (context_.clock->NowUs() < next_wake_us()) return;
+  PublishRig(context_.clock->NowUs());
+  PublishFrame();
+}
+
+void SimulatorService::UpdateStatus() { context_.status->SetCounter("late_pairs", late_); }
+
+RigidTransform SimulatorService::CameraAt(std::int64_t utime_us) {
+  return hand_eye_.CameraPose(trajectory_.At(TimeOf(utime_us)).q);
+}
+
+void SimulatorService::PublishRig(std::int64_t now_us) {
+  if (now_us < next_rig_us_) return;
+  next_rig_us_ = std::max(next_rig_us_ + 1'000'000, now_us);
+  rig_message_.utime = FrameTime(frame_);
+  context_.bus->Publish(kStereoRigChannel, rig_message_);
+}
+
+void SimulatorService::PublishArmStates(std::int64_t until_us) {
+  if (!config_.publish_arm) return;
+  for (;; ++next_arm_) {
+    const auto utime_us =
+        start_us_ + std::llround(1e6 * static_cast<double>(next_arm_) / config_.arm_rate_hz);
+    if (utime_us > until_us) return;
+    const auto sample = trajectory_.At(TimeOf(utime_us));
+    arm_state_.utime = utime_us;
+    arm_state_.seq = next_arm_;
+    arm_state_.joint_position.assign(sample.q.data(), sample.q.data() + sample.q.size());
+    arm_state_.joint_velocity.assign(sample.qdot.data(), sample.qdot.data() + sample.qdot.size());
+    context_.bus->Publish(kArmStateChannel, arm_state_);
+  }
+}
+
+void SimulatorService::PrepareFrame() {
+  // A machine too slow for the rate leaves pairs out, as a camera would.
+  while (context_.live && FrameTime(frame_) < context_.clock->NowUs() - 100'000) {
+    ++frame_;
+    ++late_;
+    context_.status->Dropped(1);
+  }
+  const std::int64_t utime_us = FrameTime(frame_);
+  camera_X_WC_ = CameraAt(utime_us);
+  const double time_s = TimeOf(utime_us);
+  const RigidTransform X_WM = scenario_.HeadPose(time_s);
+  const bool present = scenario_.HeadPresent(time_s);
+  const RigidTransform X_SW = X_WS_.inverse();
+  const auto& pictures = world_.Render(X_SW * camera_X_WC_, X_SW * X_WM, present, frame_);
+  truth_X_CM_.reset();
+  if (present) truth_X_CM_ = camera_X_WC_.inverse() * X_WM;
+  images_.utime = utime_us;
+  FillImage(pictures.left, images_t::LEFT, &left_jpeg_, &images_.images[0]);
+  FillImage(pictures.right, images_t::RIGHT, &right_jpeg_, &images_.images[1]);
+  prepared_ = true;
+}
+
+void SimulatorService::FillImage(const ImageView& picture, std::int16_t, JpegEncoder* jpeg,
+                                 image_t* image) {
+  SetImage(config_.image_format == "jpeg" ? jpeg->Encode(picture, config_.jpeg_quality) : picture,
+           images_.utime, image);
+  AddMetadata("seq", frame_, image);
+  AddMetadata("skew_us", 0, image);
+}
+
+void SimulatorService::PublishFrame() {
+  const std::int64_t utime_us = images_.utime;
+  PublishArmStates(context_.clock->NowUs());
+  if (config_.publish_camera_pose)
+    context_.bus->Publish(kCameraPoseChannel, ToMessage(camera_X_WC_, utime_us));
+  context_.bus->Publish(kHeadPoseTruthChannel,
+                        TruthMessage(utime_us, frame_, truth_X_CM_ ? &*truth_X_CM_ : nullptr));
+  context_.bus->Publish(kStereoImagesChannel, images_);
+  context_.status->Processed(1e-3 * static_cast<double>(context_.clock->NowUs() - utime_us));
+  ++frame_;
+  prepared_ = false;
+}
+
+}  // namespace visavis

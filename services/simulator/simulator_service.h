@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "common/image/image_decoder.h"
+#include "common/rigs/rig_description.h"
+#include "common/service/service.h"
+#include "common/service/service_flags.h"
+#include "services/simulator/arm_trajectory.h"
+#include "services/simulator/simulator_config.h"
+#include "visavis/arm_state_t.hpp"
+#include "visavis/images_t.hpp"
+#include "visavis/stereo_rig_t.hpp"
+
+namespace visavis {
+
+/// Publishes what capture, arm state and a measuring arm round the head would: STEREO_IMAGES,
+/// STEREO_RIG, ARM_STATE and HEAD_POSE_TRUTH.
+///
+/// A pair is rendered ahead of its exposure, since the motion is known; then it goes out readout_ms
+/// after the exposure, behind the arm states of that time, as it would from real cameras.
+class SimulatorService final : public Service {
+ public:
+  static ServiceTraits Traits();
+
+  /// @throws std::invalid_argument for a rig without an arm.
+  SimulatorService(const SimulatorConfig& config, const ServiceContext& context);
+  ~SimulatorService() override;
+
+  std::int64_t next_wake_us() const override;
+  void Wake() override;
+  bool finished() const override;
+  void UpdateStatus() override;
+
+ private:
+  double TimeOf(std::int64_t utime_us) const {
+    return 1e-6 * static_cast<double>(utime_us - start_us_);
+  }
+  std::int64_t FrameTime(std::int64_t frame) const;
+  RigidTransform CameraAt(std::int64_t utime_us);
+  void PublishArmStates(std::int64_t until_us);
+  void PublishRig(std::int64_t now_us);
+  void PrepareFrame();
+  void PublishFrame();
+  void FillImage(const ImageView& picture, std::int16_t type, JpegEncoder* jpeg, image_t* image);
+
+  const SimulatorConfig config_;
+  const ServiceContext context_;
+  RigDescription rig_;
+  RigidTransform X_WS_;
+  Scenario scenario_;
+  HandEye hand_eye_;
+  ArmTrajectory trajectory_;
+  SimulatedWorld world_;
+  JpegEncoder right_jpeg_, left_jpeg_;
+
+  std::int64_t start_us_;
+  std::int64_t frame_{0}, next_arm_{0}, next_rig_us_;
+  std::int64_t late_{0};
+  bool prepared_{false};
+  std::optional<RigidTransform> truth_X_CM_;  // of the prepared frame; none: no head
+  RigidTransform camera_X_WC_;                // of the prepared frame
+  images_t images_;
+  arm_state_t arm_state_;
+  stereo_rig_t rig_message_;
+};
+
+}  // namespace visavis
