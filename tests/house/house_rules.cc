@@ -159,8 +159,9 @@ std::vector<Violation> CheckPrintsAndExits(const std::string& file, const std::s
   static const std::regex bad(
       R"((^|[^\w.>])(printf|fprintf|vprintf|puts|fputs|putchar|perror|exit|_exit|_Exit|quick_exit|abort|assert|terminate)\s*\(|std::(cout|cerr|clog)\b)");
   // What every main() calls may print, flags' help and errors too.
-  for (const char* main : {"services/*/main.cc", "common/service/run_service.cc",
-                           "common/service/service_flags.cc", "common/tool/run_tool.cc"}) {
+  for (const char* main :
+       {"services/*/main.cc", "services/*_main.cc", "common/service/run_service.cc",
+        "common/service/service_flags.cc", "common/tool/run_tool.cc"}) {
     if (Fits(main, file)) return {};
   }
   std::vector<Violation> violations;
