@@ -168,9 +168,10 @@ void SetLength(const WireLength& length, std::int64_t value, Bytes* bytes) {
 }
 
 std::int64_t GetLength(const WireLength& length, const Bytes& bytes) {
-  std::int64_t value = static_cast<std::int8_t>(bytes[length.offset]);
-  for (int i = 1; i < length.num_bytes; ++i) value = value * 256 + bytes[length.offset + i];
-  return value;
+  std::uint64_t value = 0;
+  for (int i = 0; i < length.num_bytes; ++i) value = value << 8 | bytes[length.offset + i];
+  const int unused_bits = 64 - 8 * length.num_bytes;  // shifted up and down: the sign goes along
+  return static_cast<std::int64_t>(value << unused_bits) >> unused_bits;
 }
 
 Bytes Mutate(const WireMessage& message, Random* random) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 
 namespace visavis {
@@ -67,8 +68,10 @@ LcmStruct ReadLcmFile(const std::string& file) {
     } else if (std::regex_match(line, match, kField)) {
       result.fields.push_back({match[1], match[2], Dimensions(match[3]), match[6], number});
     } else {
-      throw std::runtime_error(file + ":" + std::to_string(number) + ": '" + line +
-                               "': must be a comment, a constant or one field");
+      std::ostringstream what;
+      what << file << ":" << number << ": '" << line
+           << "': must be a comment, a constant or one field";
+      throw std::runtime_error(what.str());
     }
   }
   if (result.name.empty()) throw std::runtime_error(file + ": must have a struct");

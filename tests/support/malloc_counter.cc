@@ -36,10 +36,12 @@ void Count(std::size_t size) {
 extern "C" {
 
 // glibc's own allocator behind the names that are replaced here.
+// NOLINTBEGIN(bugprone-reserved-identifier): glibc named them.
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
+// NOLINTEND(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) {
   Count(size);

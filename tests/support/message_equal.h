@@ -17,6 +17,7 @@ bool MessageEqual(const T& a, const T& b);
 template <typename T>
 bool FieldEqual(const T& a, const T& b) {
   if constexpr (std::is_arithmetic_v<T>) {
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bit for bit is what is meant.
     return std::memcmp(&a, &b, sizeof a) == 0;
   } else {
     return MessageEqual(a, b);
