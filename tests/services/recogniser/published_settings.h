@@ -59,8 +59,8 @@ inline void StartAt(const Vector6d& phi, PublishedEstimator::Settings* settings)
 }
 
 /// One estimator on painted pictures.
-struct Run {
-  Run(const PublishedEstimator::Settings& settings, const StereoRig& rig)
+struct EstimatorRun {
+  EstimatorRun(const PublishedEstimator::Settings& settings, const StereoRig& rig)
       : estimator(settings, TestHead(), rig) {
     timer.Restart();
   }
