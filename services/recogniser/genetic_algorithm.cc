@@ -8,9 +8,10 @@
 namespace visavis {
 
 void GaConfig::ValidateOrThrow(const std::string& prefix) const {
-  if (elite_share + immigrant_share > 0.95) {
-    throw FieldError(prefix + "immigrant_share", std::to_string(immigrant_share),
-                     "with " + prefix + "elite_share must leave 5 % for children");
+  if (num_elite() + num_immigrants() >= individuals) {
+    throw FieldError(
+        prefix + "immigrant_share", std::to_string(immigrant_share),
+        "with " + prefix + "elite_share must leave one of " + prefix + "individuals for children");
   }
 }
 
@@ -65,7 +66,11 @@ void GeneticAlgorithm::Scatter(const Vector6d& phi, const Vector6d& spread) {
 void GeneticAlgorithm::SetSpace(const SearchSpace& space) {
   space_ = space;
   codec_ = GeneCodec(space, config_.bits_per_parameter);
-  for (Individual& individual : population_) individual.phi = space_.Clamp(individual.phi);
+  for (Individual& individual : population_) {
+    if (space_.Contains(individual.phi)) continue;
+    individual.phi = space_.Clamp(individual.phi);
+    individual.evaluated = false;
+  }
 }
 
 void GeneticAlgorithm::Invalidate() {
@@ -93,7 +98,7 @@ void GeneticAlgorithm::Sort() {
 Vector6d GeneticAlgorithm::RandomPhi() {
   Vector6d phi;
   for (int k = 0; k < 6; ++k) phi[k] = random_.Uniform(space_.min[k], space_.max[k]);
-  return phi;
+  return config_.carry_remainder ? phi : codec_.Decode(codec_.Encode(phi));
 }
 
 int GeneticAlgorithm::SelectParent() {
@@ -107,7 +112,8 @@ Vector6d GeneticAlgorithm::MakeChild(const Vector6d& mother, const Vector6d& fat
   const std::uint64_t mother_gene = codec_.Encode(mother);
   std::uint64_t gene = mother_gene;
   if (random_.Uniform() < config_.crossover_probability) {
-    int begin = random_.Index(codec_.num_bits()), end = random_.Index(codec_.num_bits());
+    // Cuts lie between bits and at both ends, or the last bit would always be the mother's.
+    int begin = random_.Index(codec_.num_bits() + 1), end = random_.Index(codec_.num_bits() + 1);
     if (begin > end) std::swap(begin, end);
     const std::uint64_t mask = ((std::uint64_t{1} << end) - 1) & ~((std::uint64_t{1} << begin) - 1);
     gene = (gene & ~mask) | (codec_.Encode(father) & mask);
@@ -126,9 +132,7 @@ Vector6d GeneticAlgorithm::MakeChild(const Vector6d& mother, const Vector6d& fat
 }
 
 void GeneticAlgorithm::Reproduce() {
-  const auto size = static_cast<double>(config_.individuals);
-  const int elite = static_cast<int>(config_.elite_share * size + 0.5);
-  const int immigrants = static_cast<int>(config_.immigrant_share * size + 0.5);
+  const int elite = config_.num_elite(), immigrants = config_.num_immigrants();
   for (int i = 0; i < config_.individuals; ++i) {
     Individual& slot = next_[static_cast<std::size_t>(i)];
     if (i < elite) {

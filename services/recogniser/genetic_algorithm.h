@@ -28,6 +28,10 @@ struct GaConfig {
   /// @throws FieldError, keys under @p prefix.
   void ValidateOrThrow(const std::string& prefix) const;
 
+  /// Shares in whole individuals.
+  int num_elite() const { return static_cast<int>(elite_share * individuals + 0.5); }
+  int num_immigrants() const { return static_cast<int>(immigrant_share * individuals + 0.5); }
+
   int individuals{60};
   int bits_per_parameter{8};          ///< 6 parameters, so 48 bits a gene as published
   double elite_share{0.25};           ///< best individuals that survive unchanged
@@ -76,7 +80,7 @@ class GeneticAlgorithm {
   /// A population scattered round @p phi: normal with @p spread (standard deviations; m, rad).
   void Scatter(const Vector6d& phi, const Vector6d& spread);
 
-  /// Replaces the search space; individuals are clamped into it.
+  /// Replaces the search space; individuals outside are clamped into it, and no longer evaluated.
   void SetSpace(const SearchSpace& space);
   const SearchSpace& space() const { return space_; }
 

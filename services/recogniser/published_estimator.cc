@@ -123,7 +123,7 @@ void PublishedEstimator::Evolve(const StereoMaps& maps) {
 // The search space moves with a tracked head; a head lost for long is looked for everywhere.
 void PublishedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking) {
-    if (settings_.recentre) ga_.SetSpace(settings_.space.CentredOn(estimate_.X_CM->translation()));
+    CentreOn(estimate_.X_CM->translation());
   } else if (estimate_.status == TrackStatus::kLost &&
              monitor_.frames_in_status() % kRestartAfterLostFrames == kRestartAfterLostFrames - 1) {
     centre_.reset();
