@@ -37,7 +37,7 @@ struct ArmChain;  // Internal: hides KDL.
 /// thread and allocate nothing.
 class Arm {
  public:
-  /// @param urdf       text of the URDF, at most 4 MB
+  /// @param urdf       text of the URDF, at most 4 MB and 1000 joints
   /// @param base_link  name of the link whose frame is B
   /// @param tip_link   name of the link below it whose frame is H
   /// @throws std::invalid_argument naming what is wrong, its value and the rule. Joints between the

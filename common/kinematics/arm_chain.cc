@@ -14,23 +14,10 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "common/kinematics/urdf_check.h"
+
 namespace visavis {
 namespace {
-
-constexpr std::size_t kMaxUrdfBytes = 4 << 20;
-constexpr int kMaxNesting = 256;  // TinyXML recurses; a URDF needs 6
-
-/// Outside text as one short printable line.
-std::string Printable(const std::string& text, std::size_t max_length = 200) {
-  std::string line = text.substr(0, max_length);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
-  return text.size() > max_length ? line + "..." : line;
-}
-
-std::string Quoted(const std::string& name) { return "'" + Printable(name, 80) + "'"; }
-
-[[noreturn]] void Refuse(const std::string& what) { throw std::invalid_argument("arm: " + what); }
 
 /// Takes what urdfdom prints while it lives. console_bridge has one handler per process.
 class UrdfdomLog final : public console_bridge::OutputHandler {
@@ -51,29 +38,8 @@ class UrdfdomLog final : public console_bridge::OutputHandler {
   std::string errors_;
 };
 
-/// Depth of element nesting, from the tags alone; text that looks like tags may raise it.
-int MaxNesting(const std::string& xml) {
-  int depth = 0, max_depth = 0;
-  for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
-    if (xml[i] == '<' && xml[i + 1] != '/' && xml[i + 1] != '!' && xml[i + 1] != '?') {
-      max_depth = std::max(max_depth, ++depth);
-    } else if ((xml[i] == '<' && xml[i + 1] == '/') || (xml[i] == '/' && xml[i + 1] == '>')) {
-      --depth;
-    }
-  }
-  return max_depth;
-}
-
 urdf::ModelInterfaceSharedPtr ParseUrdf(const std::string& text) {
-  if (text.empty()) Refuse("URDF is empty, must hold a robot");
-  if (text.size() > kMaxUrdfBytes) {
-    Refuse("URDF has " + std::to_string(text.size()) + " bytes, must have at most " +
-           std::to_string(kMaxUrdfBytes));
-  }
-  if (const int nesting = MaxNesting(text); nesting > kMaxNesting) {
-    Refuse("URDF nests " + std::to_string(nesting) + " elements, must nest at most " +
-           std::to_string(kMaxNesting));
-  }
+  CheckUrdf(text);
   static std::mutex mutex;  // guards console_bridge's handler
   const std::lock_guard<std::mutex> lock(mutex);
   UrdfdomLog log;
@@ -86,43 +52,29 @@ urdf::ModelInterfaceSharedPtr ParseUrdf(const std::string& text) {
   }
   if (!model || !model->getRoot()) {
     if (error.empty()) error = log.errors().empty() ? "no robot" : log.errors();
-    Refuse("URDF cannot be read: " + Printable(error));
+    RefuseArm("URDF cannot be read: " + Printable(error));
   }
   return model;
-}
-
-/// urdfdom keeps the last of several parents of a link without a word.
-void CheckOneParentPerLink(const urdf::ModelInterface& model) {
-  for (const auto& [name, joint] : model.joints_) {
-    const auto& link = model.links_.at(joint->child_link_name);
-    if (link->parent_joint != joint) {
-      Refuse("link " + Quoted(link->name) + " is the child of joints " + Quoted(name) + " and " +
-             Quoted(link->parent_joint->name) + ", must have one parent");
-    }
-  }
 }
 
 urdf::LinkConstSharedPtr FindLink(const urdf::ModelInterface& model, const char* role,
                                   const std::string& name) {
   const urdf::LinkConstSharedPtr link = model.getLink(name);
   if (!link) {
-    Refuse(std::string(role) + " link " + Quoted(name) + " must be a link of robot " +
-           Quoted(model.getName()));
+    RefuseArm(std::string(role) + " link " + Quoted(name) + " must be a link of robot " +
+              Quoted(model.getName()));
   }
   return link;
 }
 
 /// Joints from base to tip.
-std::vector<urdf::JointConstSharedPtr> FindPath(const urdf::ModelInterface& model,
-                                                const urdf::LinkConstSharedPtr& base,
+std::vector<urdf::JointConstSharedPtr> FindPath(const urdf::LinkConstSharedPtr& base,
                                                 const urdf::LinkConstSharedPtr& tip) {
   std::vector<urdf::JointConstSharedPtr> path;
   for (urdf::LinkConstSharedPtr link = tip; link != base; link = link->getParent()) {
     if (!link->parent_joint) {
-      Refuse("tip link " + Quoted(tip->name) + " must lie below base link " + Quoted(base->name));
-    }
-    if (path.size() > model.joints_.size()) {
-      Refuse("links above " + Quoted(tip->name) + " form a cycle, must form a tree");
+      RefuseArm("tip link " + Quoted(tip->name) + " must lie below base link " +
+                Quoted(base->name));
     }
     path.push_back(link->parent_joint);
   }
@@ -144,14 +96,14 @@ JointType TypeOf(const urdf::Joint& joint) {
   const char* type = joint.type == urdf::Joint::FLOATING ? "floating"
                      : joint.type == urdf::Joint::PLANAR ? "planar"
                                                          : "unknown";
-  Refuse("joint " + Quoted(joint.name) + " has type " + type +
-         ", must be revolute, continuous, prismatic or fixed");
+  RefuseArm("joint " + Quoted(joint.name) + " has type " + type +
+            ", must be revolute, continuous, prismatic or fixed");
 }
 
 ArmJoint ReadJoint(const urdf::Joint& joint) {
   if (joint.mimic) {
-    Refuse("joint " + Quoted(joint.name) + " mimics " + Quoted(joint.mimic->joint_name) +
-           ", must move by itself");
+    RefuseArm("joint " + Quoted(joint.name) + " mimics " + Quoted(joint.mimic->joint_name) +
+              ", must move by itself");
   }
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   ArmJoint read{joint.name, TypeOf(joint), -kInfinity, kInfinity, kInfinity};
@@ -159,15 +111,15 @@ ArmJoint ReadJoint(const urdf::Joint& joint) {
   const urdf::JointLimits& limits = *joint.limits;
   if (read.type != JointType::kContinuous) {
     if (!(limits.lower < limits.upper)) {
-      Refuse("joint " + Quoted(joint.name) + " has limits " + std::to_string(limits.lower) +
-             " to " + std::to_string(limits.upper) + ", lower must be below upper");
+      RefuseArm("joint " + Quoted(joint.name) + " has limits " + std::to_string(limits.lower) +
+                " to " + std::to_string(limits.upper) + ", lower must be below upper");
     }
     read.lower = limits.lower;
     read.upper = limits.upper;
   }
   if (limits.velocity < 0) {
-    Refuse("joint " + Quoted(joint.name) + " has limit velocity " +
-           std::to_string(limits.velocity) + ", must be >= 0");
+    RefuseArm("joint " + Quoted(joint.name) + " has limit velocity " +
+              std::to_string(limits.velocity) + ", must be >= 0");
   }
   if (limits.velocity > 0) read.max_speed = limits.velocity;
   return read;
@@ -185,8 +137,8 @@ KDL::Segment MakeSegment(const urdf::Joint& joint, JointType type) {
   const KDL::Frame origin = OriginOf(joint);
   const KDL::Vector axis(joint.axis.x, joint.axis.y, joint.axis.z);
   if (!(axis.Norm() > 1e-6)) {
-    Refuse("joint " + Quoted(joint.name) + " has axis of length " + std::to_string(axis.Norm()) +
-           ", must not be 0");
+    RefuseArm("joint " + Quoted(joint.name) + " has axis of length " + std::to_string(axis.Norm()) +
+              ", must not be 0");
   }
   const auto kdl_type = type == JointType::kPrismatic ? KDL::Joint::TransAxis : KDL::Joint::RotAxis;
   const KDL::Joint kdl_joint(joint.name, origin.p, origin.M * (axis / axis.Norm()), kdl_type);
@@ -198,10 +150,9 @@ KDL::Segment MakeSegment(const urdf::Joint& joint, JointType type) {
 ArmChain ReadArmChain(const std::string& urdf, const std::string& base_link,
                       const std::string& tip_link) {
   const urdf::ModelInterfaceSharedPtr model = ParseUrdf(urdf);
-  CheckOneParentPerLink(*model);
   ArmChain chain;
   for (const auto& joint :
-       FindPath(*model, FindLink(*model, "base", base_link), FindLink(*model, "tip", tip_link))) {
+       FindPath(FindLink(*model, "base", base_link), FindLink(*model, "tip", tip_link))) {
     if (joint->type == urdf::Joint::FIXED) {
       chain.kdl.addSegment(KDL::Segment(
           joint->child_link_name, KDL::Joint(joint->name, KDL::Joint::Fixed), OriginOf(*joint)));
@@ -211,9 +162,9 @@ ArmChain ReadArmChain(const std::string& urdf, const std::string& base_link,
     chain.kdl.addSegment(MakeSegment(*joint, chain.joints.back().type));
   }
   if (chain.joints.empty() || chain.joints.size() > kMaxArmJoints) {
-    Refuse("from " + Quoted(base_link) + " to " + Quoted(tip_link) + " there are " +
-           std::to_string(chain.joints.size()) + " moving joints, must be 1 to " +
-           std::to_string(kMaxArmJoints));
+    RefuseArm("from " + Quoted(base_link) + " to " + Quoted(tip_link) + " there are " +
+              std::to_string(chain.joints.size()) + " moving joints, must be 1 to " +
+              std::to_string(kMaxArmJoints));
   }
   return chain;
 }

@@ -52,9 +52,10 @@ TEST(ArmUrdfTest, GoodOneIsAccepted) { EXPECT_EQ(Arm(kGood, "l0", "l2").num_join
 TEST(ArmUrdfTest, RefusesTextThatIsNoUrdf) {
   ExpectRefused("", "l0", "l2", "URDF is empty");
   ExpectRefused("hello", "l0", "l2", "URDF cannot be read");
+  ExpectRefused("<robot name='r'>\n<link name='l0>\n</robot>", "l0", "l2", "line ");
   ExpectRefused("<robot name='r'><link", "l0", "l2", "URDF cannot be read");
   ExpectRefused("<robot name='r'/>", "l0", "l2", "URDF cannot be read");
-  ExpectRefused("<sdf/>", "l0", "l2", "URDF cannot be read");
+  ExpectRefused("<sdf/>", "l0", "l2", "holds no <robot>");
   ExpectRefused(std::string(5 << 20, ' '), "l0", "l2", "5242880 bytes", "at most 4194304");
 }
 
@@ -106,10 +107,19 @@ TEST(ArmUrdfTest, IgnoresJointsThatAreNotOnThePath) {
 TEST(ArmUrdfTest, RefusesCycles) {
   ExpectRefused(
       Robot(Joint("a", "continuous", "l0", "l1") + Joint("b", "continuous", "l1", "l0"), 2), "l0",
-      "l1", "URDF cannot be read");
-  // With a root beside the cycle urdfdom is content.
+      "l1", "links above 'l0' form a cycle");
+  // With a root beside the cycle urdfdom would be content.
   ExpectRefused(Robot(Joint("a", "continuous", "l1", "l2") + Joint("b", "continuous", "l2", "l1")),
-                "l0", "l2", "cycle");
+                "l0", "l2", "links above 'l1' form a cycle, must form a tree");
+}
+
+TEST(ArmUrdfTest, RefusesChainsSoLongThatFreeingThemWouldOverflowTheStack) {
+  std::string joints;
+  for (int i = 0; i < 20'000; ++i) {
+    joints += Joint("j" + std::to_string(i), "fixed", "l" + std::to_string(i),
+                    "l" + std::to_string(i + 1));
+  }
+  ExpectRefused(Robot(joints, 20'001), "l0", "l1", "more than 1000 joints");
 }
 
 TEST(ArmUrdfTest, RefusesALinkWithTwoParents) {
