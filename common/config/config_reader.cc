@@ -1,7 +1,12 @@
 #include "common/config/config_reader.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <cctype>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 
 namespace visavis {
 namespace {
@@ -32,6 +37,41 @@ std::string OneLine(const YAML::Node& node) {
   return text;
 }
 
+std::string ReadText(const std::string& filename) {
+  try {
+    std::ifstream file(filename, std::ios::binary);
+    if (!file) throw ConfigError(filename + ": cannot be read");
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  } catch (const std::ios_base::failure&) {  // a folder opens, and then fails
+    throw ConfigError(filename + ": cannot be read");
+  }
+}
+
+// Takes a document and keeps nothing.
+class SkipDocument : public YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+// Whether there is text behind the first document, which YAML::Load() leaves out in silence.
+// (YAML::LoadAll() does not come back from ",a]b:".)
+bool HasSecondDocument(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  SkipDocument skip;
+  return parser.HandleNextDocument(skip) && parser.HandleNextDocument(skip);
+}
+
 }  // namespace
 
 Rule<std::string> ChannelName() {
@@ -46,7 +86,7 @@ Rule<std::string> ChannelPrefix() {
 
 ConfigSource::ConfigSource(const std::string& filename, const std::vector<std::string>& overrides)
     : filename_(filename) {
-  if (!filename.empty()) Parse([&] { return YAML::LoadFile(filename); });
+  if (!filename.empty()) Parse(ReadText(filename));
   if (!root_.IsMap()) root_ = YAML::Node(YAML::NodeType::Map);
   for (const auto& assignment : overrides) Override(assignment);
 }
@@ -54,16 +94,15 @@ ConfigSource::ConfigSource(const std::string& filename, const std::vector<std::s
 ConfigSource ConfigSource::FromText(const std::string& text, const std::string& name) {
   ConfigSource source;
   source.filename_ = name;
-  source.Parse([&] { return YAML::Load(text); });
+  source.Parse(text);
   return source;
 }
 
-void ConfigSource::Parse(const std::function<YAML::Node()>& load) {
+void ConfigSource::Parse(const std::string& text) {
   try {
-    root_ = load();
-  } catch (const YAML::BadFile&) {
-    throw ConfigError(filename_ + ": cannot be read");
-  } catch (const YAML::ParserException& e) {
+    root_ = YAML::Load(text);
+    if (HasSecondDocument(text)) throw ConfigError(filename_ + ": must be one YAML document");
+  } catch (const YAML::Exception& e) {
     throw ConfigError(filename_ + ":" + std::to_string(e.mark.line + 1) + ": is no YAML: " + e.msg);
   }
   if (!root_.IsMap() && !root_.IsNull())
@@ -120,13 +159,14 @@ std::string ConfigSource::PlaceOf(const std::string& dotted_key) const {
 
 void ConfigReader::RejectUnknownKeys() const {
   if (!node_.IsMap()) return;
+  std::set<std::string> seen;
   for (const auto& entry : node_) {
     const std::string key = entry.first.Scalar();
+    if (!seen.insert(key).second) Fail(key, entry.second, "must not be given twice");
     if (known_.count(key)) continue;
     std::string known;
     for (const auto& name : known_) known += " " + name;
-    throw ConfigError(source_.PlaceOf(prefix_ + key) + ": " + prefix_ + key + ": " +
-                      OneLine(entry.second) + ": unknown key, must be one of" + known);
+    Fail(key, entry.second, "unknown key, must be one of" + known);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -33,7 +32,7 @@ class ConfigSource {
 
  private:
   ConfigSource() = default;
-  void Parse(const std::function<YAML::Node()>& load);
+  void Parse(const std::string& text);
   void Override(const std::string& assignment);
 
   std::string filename_;
@@ -42,8 +41,8 @@ class ConfigSource {
 };
 
 /// Visitor that fills a struct from one mapping: `template <class A> void Serialize(A* a)` calls
-/// a->Visit(key, &member[, rule]). A missing key keeps its default; an unknown key, a value of the
-/// wrong type or one that breaks its rule is a ConfigError.
+/// a->Visit(key, &member[, rule]). A missing key keeps its default; an unknown key, a key given
+/// twice, a value of the wrong type or one that breaks its rule is a ConfigError.
 class ConfigReader {
  public:
   ConfigReader(const ConfigSource& source, const YAML::Node& node, std::string prefix)
@@ -58,7 +57,8 @@ class ConfigReader {
     VisitIf(key, value, &rule);
   }
 
-  /// To be called after the last Visit. @throws ConfigError naming the first unknown key.
+  /// To be called after the last Visit. @throws ConfigError naming the first key that is unknown or
+  /// given twice.
   void RejectUnknownKeys() const;
 
  private:

@@ -1,7 +1,7 @@
 #include "common/convert/image_message.h"
 
+#include <algorithm>
 #include <charconv>
-#include <cstring>
 
 #include "common/convert/message_error.h"
 
@@ -43,6 +43,7 @@ void CheckSize(const char* name, const ImageView& image, const Pinhole& camera) 
 }  // namespace
 
 ImageView FromMessage(const image_t& m) {
+  RequireField(m.utime >= 0, "image_t.utime", m.utime, "must be >= 0");
   RequireField(m.width >= 1 && m.width <= 16384, "image_t.width", m.width, "must be 1 to 16384 px");
   RequireField(m.height >= 1 && m.height <= 16384, "image_t.height", m.height,
                "must be 1 to 16384 px");
@@ -65,6 +66,8 @@ StereoImages FromMessage(const images_t& message, const StereoRig& rig) {
   StereoImages result;
   RequireField(message.utime >= 0, "images_t.utime", message.utime, "must be >= 0");
   result.utime_us = message.utime;
+  RequireField(message.image_types.size() == message.images.size(), "images_t.image_types",
+               message.image_types.size(), "must be as many as images");
   for (std::size_t i = 0; i < message.images.size(); ++i) {
     const std::int16_t type = message.image_types[i];
     RequireField(type == images_t::LEFT || type == images_t::RIGHT, "images_t.image_types", type,
@@ -92,7 +95,9 @@ void SetImage(const ImageView& image, std::int64_t utime_us, image_t* message) {
   const std::size_t size = image.format == PixelFormat::kJpeg
                                ? image.size
                                : static_cast<std::size_t>(image.stride) * image.height;
-  message->data.assign(image.data, image.data + size);
+  // A view's last row may end at its last pixel: what is missing to a whole stride becomes 0.
+  message->data.assign(image.data, image.data + std::min(size, image.size));
+  message->data.resize(size, 0);
   message->size = static_cast<std::int32_t>(size);
   message->nmetadata = 0;
   message->metadata.clear();

@@ -21,8 +21,9 @@ RigidTransform ReadTransform(const char* field, const double p_m[3], const doubl
   const Eigen::Vector3d p = Eigen::Map<const Eigen::Vector3d>(p_m, 3);
   const Eigen::Quaterniond q(q_wxyz[0], q_wxyz[1], q_wxyz[2], q_wxyz[3]);
   RequireField(p.allFinite() && p.norm() < 1e6, field, p.transpose(),
-               "position must be finite, in m");
-  RequireField(std::abs(q.norm() - 1) <= 1e-3, field, q.coeffs().transpose(),
+               "position must be finite and below 1e6 m");
+  RequireField(std::abs(q.norm() - 1) <= 1e-3, field,
+               Eigen::Map<const Eigen::RowVector4d>(q_wxyz, 4),
                "quaternion must have norm 1 within 0.001");
   return MakeTransform(q, p);
 }

@@ -34,15 +34,17 @@ void WriteTransform(const RigidTransform& X, double p_m[3], double q_wxyz[4]) {
 }  // namespace
 
 RigDescription FromMessage(const stereo_rig_t& message) {
+  RequireField(message.utime >= 0, "stereo_rig_t.utime", message.utime, "must be >= 0");
   RigDescription description;
   description.rig = {FromMessage(message.right), FromMessage(message.left),
-                     ReadTransform("X_CL", message.p_CL_m, message.q_CL_wxyz)};
+                     ReadTransform("stereo_rig_t.X_CL", message.p_CL_m, message.q_CL_wxyz)};
   if (message.has_hand_eye) {
-    description.X_HC = ReadTransform("X_HC", message.p_HC_m, message.q_HC_wxyz);
+    description.X_HC = ReadTransform("stereo_rig_t.X_HC", message.p_HC_m, message.q_HC_wxyz);
   }
   if (!message.arm_urdf.empty()) {
-    description.arm = ArmDescription{message.arm_urdf, message.arm_base_link, message.arm_tip_link,
-                                     ReadTransform("X_WB", message.p_WB_m, message.q_WB_wxyz)};
+    description.arm =
+        ArmDescription{message.arm_urdf, message.arm_base_link, message.arm_tip_link,
+                       ReadTransform("stereo_rig_t.X_WB", message.p_WB_m, message.q_WB_wxyz)};
   }
   try {
     description.ValidateOrThrow();

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 
 #include "common/config/config_reader.h"
@@ -79,11 +80,28 @@ struct RigFields {
 
 using ReadFile = std::function<std::string(const std::string&)>;
 
+// What has no default: these keys must stand in @p node, whose own key is @p parent.
+void Require(const YAML::Node& node, const std::string& parent,
+             std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    if (!node[key]) throw FieldError(parent + key, "missing", "must be given");
+  }
+}
+
+void RequireKeys(const YAML::Node& root) {
+  Require(root, "", {"right", "left", "X_CL"});
+  for (const char* camera : {"right", "left"}) {
+    Require(root[camera], std::string(camera) + ".", {"width", "height", "fx", "fy", "cx", "cy"});
+  }
+  for (const char* transform : {"X_CL", "X_HC"}) {
+    if (root[transform]) Require(root[transform], std::string(transform) + ".", {"p_m", "q_wxyz"});
+  }
+  if (root["arm"]) Require(root["arm"], "arm.", {"urdf", "base", "tip"});
+}
+
 RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
                           const ReadFile& read_file) {
-  for (const char* key : {"right", "left", "X_CL"}) {
-    if (!root[key]) throw FieldError(key, "missing", "must be given");
-  }
+  RequireKeys(root);
   RigDescription description;
   description.rig = {fields.right.camera, fields.left.camera, fields.X_CL.ToTransform("X_CL")};
   if (root["X_HC"]) description.X_HC = fields.X_HC.ToTransform("X_HC");
@@ -94,6 +112,7 @@ RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
     } catch (const std::runtime_error&) {
       throw FieldError("arm.urdf", fields.arm.urdf, "cannot be read");
     }
+    if (urdf.empty()) throw FieldError("arm.urdf", fields.arm.urdf, "is empty");
     description.arm = ArmDescription{urdf, fields.arm.base, fields.arm.tip,
                                      fields.arm.X_WB.ToTransform("arm.X_WB")};
   }

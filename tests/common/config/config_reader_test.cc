@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/config/config_writer.h"
+#include "common/core/random.h"
 
 namespace visavis {
 namespace {
@@ -109,6 +110,49 @@ TEST(ConfigReaderTest, AMissingFileAndBrokenYamlAreNamed) {
               ThrowsConfigError(HasSubstr("is no YAML")));
   EXPECT_THAT([] { LoadConfig<Config>(WriteFile("- 1\n")); },
               ThrowsConfigError(HasSubstr("mapping")));
+}
+
+TEST(ConfigReaderTest, AFolderAndASecondDocumentAreRefused) {
+  EXPECT_THAT([] { LoadConfig<Config>(::testing::TempDir()); },
+              ThrowsConfigError(HasSubstr(": cannot be read")));
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("count: 2\n---\ncount: 3\n")); },
+              ThrowsConfigError(HasSubstr("must be one YAML document")));
+}
+
+TEST(ConfigReaderTest, AKeyGivenTwiceIsNamedWithItsSecondLine) {
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("count: 2\nmode: none\ncount: 3\n")); },
+              ThrowsConfigError(HasSubstr("yaml:3: count: 3: must not be given twice")));
+  EXPECT_THAT([] { LoadConfig<Config>(WriteFile("search: {min_mm: 1, min_mm: 1}\n")); },
+              ThrowsConfigError(HasSubstr("search.min_mm: 1: must not be given twice")));
+}
+
+TEST(ConfigReaderTest, NoTextMakesItDoAnythingButReadOrRefuse) {
+  const std::string good =
+      "mode: none\ncount: 4\nsearch: {min_mm: -1, max_mm: 2}\nlist: [1, 2.5]\n";
+  Random random(1);
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::string text = good;
+    for (int k = random.Index(4); k >= 0; --k) {
+      const auto at = static_cast<std::size_t>(random.Index(static_cast<int>(text.size())));
+      const char odd[] =
+          "{}[]:,-&*!|>'\"%@`#\n\t \xff\x01"
+          "19a.";
+      if (random.Index(3) == 0) {
+        text.erase(at, 1 + static_cast<std::size_t>(random.Index(5)));
+      } else {
+        text.insert(at, 1, odd[random.Index(static_cast<int>(sizeof odd) - 1)]);
+      }
+      if (text.empty()) text = " ";
+    }
+    try {
+      LoadConfig<Config>(WriteFile(text));
+    } catch (const ConfigError& e) {
+      EXPECT_THAT(e.what(), HasSubstr("config_reader_test.yaml")) << text;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50);
 }
 
 TEST(ConfigWriterTest, WhatIsWrittenReadsBackEqual) {
