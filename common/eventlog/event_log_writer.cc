@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "common/core/check.h"
 #include "common/eventlog/event_log.h"
@@ -80,18 +81,18 @@ void EventLogWriter::Write(std::int64_t utime, const std::string& channel, const
   if (front + size <= kBufferSize) {
     if (size > 0) std::memcpy(out + channel.size(), data, size);
     buffered_ += front + size;
+    ++num_buffered_;
     return;
   }
   // Larger than the buffer: straight to the file.
-  WriteOut(buffer_.data(), front);
-  WriteOut(static_cast<const std::uint8_t*>(data), size);
+  WriteOut(buffer_.data(), front, 1);
+  WriteOut(static_cast<const std::uint8_t*>(data), size, 1);
   file_end_ += static_cast<std::int64_t>(front + size);
 }
 
 void EventLogWriter::Flush() {
-  const std::size_t size = buffered_;
-  buffered_ = 0;
-  WriteOut(buffer_.data(), size);
+  const std::size_t size = std::exchange(buffered_, 0);
+  WriteOut(buffer_.data(), size, std::exchange(num_buffered_, 0));
   file_end_ += static_cast<std::int64_t>(size);
 }
 
@@ -109,13 +110,14 @@ void EventLogWriter::Close() {
   if (close(fd) < 0) Fail(path_, errno);
 }
 
-/// Writes to the file; on failure cuts it back to the last whole event that was there before.
-void EventLogWriter::WriteOut(const std::uint8_t* data, std::size_t size) {
+/// Writes bytes of @p num_events events; on failure cuts the file back to what was there before.
+void EventLogWriter::WriteOut(const std::uint8_t* data, std::size_t size, std::int64_t num_events) {
   while (size > 0) {
     const ssize_t n = write(fd_, data, size);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       const int error = errno;
+      num_lost_ += num_events;
       if (ftruncate(fd_, file_end_) == 0) lseek(fd_, file_end_, SEEK_SET);
       Fail(path_, error);
     }

@@ -39,10 +39,11 @@ class EventLogWriter {
 
   std::int64_t num_events() const { return num_events_; }  ///< given to Write() so far
   std::int64_t num_bytes() const { return num_bytes_; }    ///< their size in the file
+  std::int64_t num_lost() const { return num_lost_; }      ///< of these, lost when writing failed
   const std::string& path() const { return path_; }
 
  private:
-  void WriteOut(const std::uint8_t* data, std::size_t size);
+  void WriteOut(const std::uint8_t* data, std::size_t size, std::int64_t num_events);
 
   std::string path_;
   int fd_{-1};
@@ -50,6 +51,8 @@ class EventLogWriter {
   std::int64_t next_number_{0};
   std::int64_t num_events_{0};
   std::int64_t num_bytes_{0};
+  std::int64_t num_lost_{0};
+  std::int64_t num_buffered_{0};
   std::vector<std::uint8_t> buffer_;  ///< whole events, not yet in the file
   std::size_t buffered_{0};
 };

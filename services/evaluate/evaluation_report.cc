@@ -84,7 +84,11 @@ std::string Value(const std::optional<double>& value, const char* format) {
 }
 
 void AddAccuracy(const char* title, const Accuracy& accuracy, Text* text) {
-  text->Line("%-14s %10s %10s %10s %10s", title, "rmse", "mean", "max", "bias");
+  if (accuracy.num_frames > 0) {
+    text->Line("%-14s %10s %10s %10s %10s", title, "rmse", "mean", "max", "bias");
+  } else {
+    text->Line("%s", title);
+  }
   const auto row = [&](const char* name, const std::optional<Statistics>& s, double unit) {
     text->Line("  %-12s %10.2f %10.2f %10.2f %10.2f", name, s->rmse * unit, s->mean * unit,
                s->max * unit, s->bias * unit);

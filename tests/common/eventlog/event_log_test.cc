@@ -2,8 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
-#include <cstdio>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <lcm/lcm-cpp.hpp>
@@ -229,6 +230,44 @@ TEST(EventLogTest, ErrorsNameTheFileAndTheReason) {
               ThrowsMessage<std::runtime_error>("/dev/full: No space left on device"));
   EXPECT_THAT([] { WriteLog("/dev/full", 1, 2'000'000); },
               ThrowsMessage<std::runtime_error>("/dev/full: No space left on device"));
+}
+
+/// While it lives, files cannot grow beyond a size: what a full disk does to a writer.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(EventLogTest, AfterAFullDiskTheLogEndsWithAWholeEventAndGoesOn) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.lcm";
+  EventLogWriter writer(path, EventLogWriter::Mode::kCreate);
+  Put(&writer, 0, 1000);
+  writer.Flush();
+  {
+    const FileSizeLimit limit(2500);
+    Put(&writer, 1, 1000);
+    Put(&writer, 2, 1000);
+    EXPECT_THAT([&] { writer.Flush(); },
+                ::testing::ThrowsMessage<std::runtime_error>(path + ": File too large"));
+    EXPECT_EQ(writer.num_lost(), 2);
+    EXPECT_THROW(Put(&writer, 3, 2'000'000), std::runtime_error);  // beyond the buffer
+    EXPECT_EQ(writer.num_lost(), 3);
+  }
+  Put(&writer, 4, 1000);
+  writer.Close();
+  EventLogReader reader(path);
+  EXPECT_THAT(ReadNumbers(&reader), ElementsAre(0, 4));
+  EXPECT_EQ(reader.num_damaged_bytes(), 0);
 }
 
 TEST(EventLogTest, AppendingCutsATruncatedTailAndContinuesTheNumbers) {
