@@ -34,10 +34,10 @@ struct GaConfig {
 
   int individuals{60};
   int bits_per_parameter{8};          ///< 6 parameters, so 48 bits a gene as published
-  double elite_share{0.25};           ///< best individuals that survive unchanged
+  double elite_share{0.4};            ///< best individuals that survive unchanged
   int tournament{2};                  ///< parents are the best of so many drawn
   double crossover_probability{1.0};  ///< of two-point crossover, else a copy
-  double mutation_probability{0.05};  ///< of each bit
+  double mutation_probability{0.03};  ///< of each bit
   double immigrant_share{0.1};        ///< new random individuals each generation
   /// true: what the bits cannot express stays beside them in floating point, so that feedforward
   /// below one step is not lost. false: as printed.

@@ -43,8 +43,8 @@ struct HeadModelConfig {
   double semi_axis_z_mm{98};
   double hair_tilt_deg{34};    ///< how far the plane of C_h leans back about x
   double hair_offset_mm{-37};  ///< hair where -y cos(tilt) + z sin(tilt) exceeds it
-  double chin_gap_deg{90};     ///< lower sector where the outline is neck, not background
-  double outline_width{0.15};  ///< S_out's width over the outline's radius
+  double chin_gap_deg{50};     ///< lower sector where the outline is neck, not background
+  double outline_width{0.35};  ///< S_out's width over the outline's radius
   double eye_x_mm{31};         ///< centre of the eye from the middle
   double eye_y_mm{20};
   double eye_half_width_mm{14};

@@ -22,11 +22,11 @@ struct TrackMonitorConfig {
     a->Visit("max_step_mm", &max_step_mm, InRange(1.0, 1000.0, "mm"));
     a->Visit("max_step_deg", &max_step_deg, InRange(0.5, 180.0, "deg"));
   }
-  double min_fitness{0.78};  ///< of F, Eq. 32, normalised
+  double min_fitness{0.62};  ///< of F, Eq. 32, normalised
   double min_site{0.0};      ///< of F_site
-  double min_color{0.5};     ///< of F_color; not asked on grey images
-  double min_feat{0.12};     ///< of F_feat
-  int confirm_frames{5};     ///< good frames in a row before TRACKING
+  double min_color{0.38};    ///< of F_color; not asked on grey images
+  double min_feat{0.16};     ///< of F_feat
+  int confirm_frames{8};     ///< good frames in a row before TRACKING
   int lose_frames{5};        ///< bad frames in a row before LOST
   double max_step_mm{40};  ///< from the last pose, carried by the camera's motion, in a good frame
   double max_step_deg{12};
