@@ -68,7 +68,7 @@ struct Demands {
 
 template <typename Path>
 Demands DemandsOf(const char* name, DemoRigTest* test, const Path& path) {
-  const int n = 400;
+  const int n = 200;
   const JointPath joints = test->ik.SolvePath(HandPath(test->hand_eye, path, n));
   EXPECT_THAT(joints.unreached, IsEmpty()) << joints.Describe();
   Demands d;
