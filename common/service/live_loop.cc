@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <exception>
 #include <system_error>
 
 #include "common/bus/channels.h"
+#include "common/service/guard.h"
 
 namespace visavis {
 namespace {
@@ -28,15 +28,6 @@ std::string DescribeSmallBuffer(const ReceiveBuffer& buffer) {
 timespec TimeUntil(std::int64_t now_us, std::int64_t due_us) {
   const std::int64_t wait_us = std::max<std::int64_t>(0, due_us - now_us);
   return {static_cast<time_t>(wait_us / 1'000'000), static_cast<long>(wait_us % 1'000'000 * 1000)};
-}
-
-template <typename Action>
-void Guard(StatusReporter* status, const Clock& clock, const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& e) {
-    status->Rejected(e.what(), clock.NowUs());
-  }
 }
 
 }  // namespace
