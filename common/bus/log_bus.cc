@@ -1,5 +1,6 @@
 #include "common/bus/log_bus.h"
 
+#include <stdexcept>
 #include <utility>
 
 namespace visavis {
@@ -17,7 +18,12 @@ bool LogBus::Dispatch(const LogEvent& event) {
 }
 
 void LogBus::PublishBytes(const std::string& channel, const std::uint8_t* data, int size) {
-  if (writer_) writer_->Write(clock_.NowUs(), channel, data, static_cast<std::size_t>(size));
+  if (!writer_) return;
+  try {
+    writer_->Write(clock_.NowUs(), channel, data, static_cast<std::size_t>(size));
+  } catch (const std::runtime_error& e) {
+    throw RecordError(e.what());
+  }
 }
 
 void LogBus::SubscribeBytes(const std::string& channel, BytesHandler handler, int) {

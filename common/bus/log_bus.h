@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,15 @@
 
 namespace visavis {
 
+/// What was published could not be written to the log (a full disk): there is no use in going on.
+class RecordError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Bus without a network: its owner feeds it the events of a log, and what is published goes to
-/// another log, stamped with the clock's time. Handlers run inside Dispatch().
+/// another log, stamped with the clock's time; publishing throws RecordError where that fails.
+/// Handlers run inside Dispatch().
 class LogBus final : public Bus {
  public:
   /// @p writer may be null: what is published is dropped. Both are aliased.

@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <exception>
 #include <system_error>
 
 #include "common/bus/channels.h"
+#include "common/service/guard.h"
 
 namespace visavis {
 namespace {
 
 constexpr std::int64_t kStatusPeriodUs = 1'000'000;
-constexpr int kMaxMessagesAtOnce = 64;  // so that a flood cannot starve timers and stop
+constexpr std::int64_t kRetryUs = 100'000;  // a wake that failed is tried again after this
+constexpr int kMaxMessagesAtOnce = 64;      // so that a flood cannot starve timers and stop
 
 std::string DescribeSmallBuffer(const ReceiveBuffer& buffer) {
   if (!buffer.too_small()) return "";
@@ -30,26 +31,19 @@ timespec TimeUntil(std::int64_t now_us, std::int64_t due_us) {
   return {static_cast<time_t>(wait_us / 1'000'000), static_cast<long>(wait_us % 1'000'000 * 1000)};
 }
 
-template <typename Action>
-void Guard(StatusReporter* status, const Clock& clock, const Action& action) {
-  try {
-    action();
-  } catch (const std::exception& e) {
-    status->Rejected(e.what(), clock.NowUs());
-  }
-}
-
 }  // namespace
 
 void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock& clock,
              const StopSignal& stop) {
-  std::int64_t next_status_us = clock.NowUs();
+  std::int64_t next_status_us = clock.NowUs(), retry_us = 0;
+  const auto next_wake_us = [&] { return std::max(service->next_wake_us(), retry_us); };
   sd_notify(0, "READY=1");
   pollfd fds[] = {{stop.fd(), POLLIN, 0}, {bus->fd(), POLLIN, 0}};
   while (!service->finished()) {
     const std::int64_t now_us = clock.NowUs();
     if (now_us < next_status_us - 2 * kStatusPeriodUs)
       next_status_us = now_us;  // the clock was set back
+    if (now_us < retry_us - kRetryUs) retry_us = 0;
     if (now_us >= next_status_us) {
       status->SetCondition("receive_buffer", DescribeSmallBuffer(bus->GetReceiveBuffer()));
       Guard(status, clock, [&] { service->UpdateStatus(); });
@@ -57,10 +51,15 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
       sd_notify(0, "WATCHDOG=1");
       next_status_us = std::max(next_status_us + kStatusPeriodUs, now_us);
     }
-    if (service->next_wake_us() <= now_us) Guard(status, clock, [&] { service->Wake(); });
+    if (next_wake_us() <= now_us) {
+      retry_us = now_us + kRetryUs;
+      Guard(status, clock, [&] {
+        service->Wake();
+        retry_us = 0;
+      });
+    }
 
-    const timespec wait =
-        TimeUntil(clock.NowUs(), std::min(next_status_us, service->next_wake_us()));
+    const timespec wait = TimeUntil(clock.NowUs(), std::min(next_status_us, next_wake_us()));
     if (ppoll(fds, 2, &wait, nullptr) < 0) {
       if (errno == EINTR) continue;
       throw std::system_error(errno, std::generic_category(), "poll");
@@ -71,7 +70,7 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
         bool handled = true;
         Guard(status, clock, [&] { handled = bus->HandleOne(0); });
         if (!handled) break;
-        if (service->next_wake_us() <= clock.NowUs()) break;
+        if (next_wake_us() <= clock.NowUs()) break;
       }
     }
   }

@@ -1,9 +1,10 @@
 #include "common/service/offline_loop.h"
 
 #include <algorithm>
-#include <exception>
+#include <stdexcept>
 
 #include "common/bus/channels.h"
+#include "common/service/guard.h"
 
 namespace visavis {
 namespace {
@@ -21,11 +22,7 @@ void Replay::WakeUntil(std::int64_t log_us) {
   while (service_.next_wake_us() <= log_us) {
     clock_.Set(std::max(clock_.NowUs(), service_.next_wake_us()));
     const std::int64_t before = service_.next_wake_us();
-    try {
-      service_.Wake();
-    } catch (const std::exception& e) {
-      status_.Rejected(e.what(), clock_.NowUs());
-    }
+    Guard(&status_, clock_, [&] { service_.Wake(); });
     if (service_.next_wake_us() == before)
       break;  // a wake that moves nothing must not hang a replay
   }
@@ -37,7 +34,7 @@ void Replay::PublishStatusIfDue() {
   }
   if (clock_.NowUs() < next_status_us_) return;
   next_status_us_ = clock_.NowUs() + kStatusPeriodUs;
-  service_.UpdateStatus();
+  Guard(&status_, clock_, [&] { service_.UpdateStatus(); });
   bus_.Publish(kServiceStatusChannel, status_.Make(clock_.NowUs()));
 }
 
@@ -52,26 +49,25 @@ void Replay::Run(EventLogReader* reader, const Filter& filter, const StopSignal&
     WakeUntil(event.utime);
     clock_.Set(std::max(clock_.NowUs(), event.utime));
     PublishStatusIfDue();
-    if (filter.is_own_output(event)) continue;
-    if (writer_ && (filter.keep_images || !filter.is_image(event))) {
+    if (filter.is_own_output && filter.is_own_output(event)) continue;
+    const bool left_out = !filter.keep_images && filter.is_image && filter.is_image(event);
+    if (writer_ && !left_out) {
       writer_->Write(event.utime, event.channel, event.data.data(), event.data.size());
     }
-    try {
-      bus_.Dispatch(event);
-    } catch (const std::exception& e) {
-      status_.Rejected(e.what(), clock_.NowUs());
-    }
+    Guard(&status_, clock_, [&] { bus_.Dispatch(event); });
   }
   service_.Finish();
 }
 
 void RunFast(Service* service, ManualClock* clock, StatusReporter* status, const StopSignal& stop) {
   while (!stop.pending() && !service->finished() && service->next_wake_us() != Service::kNever) {
-    clock->Set(std::max(clock->NowUs(), service->next_wake_us()));
-    try {
-      service->Wake();
-    } catch (const std::exception& e) {
-      status->Rejected(e.what(), clock->NowUs());
+    const std::int64_t due_us = service->next_wake_us();
+    const std::int64_t rejected = status->rejected();
+    clock->Set(std::max(clock->NowUs(), due_us));
+    Guard(status, *clock, [&] { service->Wake(); });
+    // What fails and asks for the same time again would fail for ever.
+    if (service->next_wake_us() == due_us && status->rejected() > rejected) {
+      throw std::runtime_error(status->last_error());
     }
   }
   service->Finish();

@@ -16,6 +16,7 @@ class Replay {
  public:
   /// @param is_own_output whether an event is an earlier output of this service
   /// @param is_image whether an event holds images; those are recorded only with @p keep_images
+  /// Either may be empty: no event is.
   struct Filter {
     std::function<bool(const LogEvent&)> is_own_output;
     std::function<bool(const LogEvent&)> is_image;
@@ -43,6 +44,7 @@ class Replay {
 };
 
 /// Runs a service that needs no input, as fast as it goes: its clock jumps from wake to wake.
+/// @throws std::runtime_error for a wake that fails and would be due at the same time again.
 void RunFast(Service* service, ManualClock* clock, StatusReporter* status, const StopSignal& stop);
 
 }  // namespace visavis

@@ -32,7 +32,8 @@ class Service {
   virtual bool finished() const { return false; }
   /// Called once a second before the status goes out.
   virtual void UpdateStatus() {}
-  /// Called once at the end of a replay or a live run, for what is still waiting.
+  /// Called at the end of a live run, of a replay, and of each session of a replay (the log jumps
+  /// back by more than 1 s): for what is still waiting.
   virtual void Finish() {}
 };
 

@@ -29,25 +29,28 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
     app.add_option(alias.flag, alias_values[i],
                    alias.help + " (short for --set " + alias.key + "=)");
   }
-  CLI::Option* record = nullptr;
+  CLI::Option *record = nullptr, *replay = nullptr;
   if (traits.replays || traits.runs_fast) {
     record = app.add_option("--record", flags.record, "log to write");
   }
   if (traits.replays) {
-    auto* replay = app.add_option("--replay", flags.replay,
-                                  "read a log lock-step, as fast as it goes, without a network");
-    record->needs(replay);
+    replay = app.add_option("--replay", flags.replay,
+                            "read a log lock-step, as fast as it goes, without a network");
     app.add_flag("--keep-images", flags.keep_images, "with --record: keep the images too")
-        ->needs(record);
+        ->needs(record)
+        ->needs(replay);
   }
   if (traits.runs_fast) {
     auto* fast =
         app.add_flag("--fast", flags.fast, "as fast as it goes, into --record, without a network");
     fast->needs(record);
-    record->needs(fast);
+    if (replay) fast->excludes(replay);
   }
   try {
     app.parse(argc, argv);
+    if (!flags.record.empty() && flags.replay.empty() && !flags.fast) {
+      throw CLI::RequiresError("--record", traits.replays ? "--replay" : "--fast");
+    }
   } catch (const CLI::ParseError& e) {
     flags.exit_now = true;
     flags.exit_code = e.get_exit_code() == 0 ? kExitOk : kExitBadUsage;

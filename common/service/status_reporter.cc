@@ -100,7 +100,7 @@ const service_status_t& StatusReporter::Make(std::int64_t now_us) {
 }
 
 void StatusReporter::ReadProcess(std::int64_t now_us) {
-  if (start_us_ < 0) start_us_ = now_us;
+  if (start_us_ < 0 || now_us < start_us_) start_us_ = now_us;  // the clock may be set back
   message_.utime = now_us;
   message_.uptime_s = 1e-6 * static_cast<double>(now_us - start_us_);
   const double cpu_s = CpuSeconds();
