@@ -31,13 +31,32 @@ std::vector<Transfer> Transfers(const Actor& to, const std::vector<const Actor*>
   return result;
 }
 
-bool AnyOccludes(const RayScene& own, const std::vector<Transfer>& others,
-                 const Eigen::Vector3f& from, const Eigen::Vector3f& direction, float far_m) {
-  if (own.Occluded(from, direction, 0, far_m)) return true;
+constexpr int kFan = RayScene::kFan;
+using Fan = std::array<Eigen::Vector3f, kFan>;
+
+/// How many of the fan's rays meet nothing.
+int CountOpen(const RayScene& own, const std::vector<Transfer>& others, const Eigen::Vector3f& from,
+              const Fan& fan, float far_m) {
+  unsigned open = (1u << kFan) - 1;
+  own.Occlude(from, fan, far_m, &open);
   for (const Transfer& other : others) {
-    if (other.rays->Occluded(other.R * from + other.p, other.R * direction, 0, far_m)) return true;
+    if (open == 0) break;
+    Fan turned;
+    for (std::size_t k = 0; k < kFan; ++k) turned[k] = other.R * fan[k];
+    other.rays->Occlude(other.R * from + other.p, turned, far_m, &open);
   }
-  return false;
+  int count = 0;
+  for (; open != 0; open &= open - 1) ++count;
+  return count;
+}
+
+/// Direction @p r of @p count within a disc of the given radius about @p axis, evenly spread.
+Eigen::Vector3f Spread(int r, int count, double disc, const Eigen::Vector3f& axis,
+                       const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  const double radius = disc * std::sqrt((r + 0.5) / count), angle = 2.399963229728653 * r;
+  return static_cast<float>(radius * std::cos(angle)) * a +
+         static_cast<float>(radius * std::sin(angle)) * b +
+         static_cast<float>(std::sqrt(1 - radius * radius)) * axis;
 }
 
 }  // namespace
@@ -60,7 +79,7 @@ Actor::Actor(const std::vector<Part>& parts, bool bystander) : bystander_(bystan
       const float texels = std::abs(e.x() * f.y() - e.y() * f.x());
       shade.texels_per_m.push_back(std::sqrt(texels / std::max(area, 1e-9f)));
       const Eigen::Vector2f middle = (mesh.uv[a] + mesh.uv[b] + mesh.uv[c]) / 3;
-      shade.labels.push_back(part.texture.Sample(middle.x(), middle.y(), 0).label);
+      shade.labels.push_back(Texture::Fetch(part.texture.Locate(middle.x(), middle.y(), 0)).label);
     }
     parts_.push_back(std::move(shade));
     vertices_.push_back(mesh.vertices);
@@ -91,22 +110,23 @@ void Actor::Bend(const RigidTransform& X_OB) {
 
 void Actor::ComputeOpenness(const std::vector<const Actor*>& others, int rays) {
   const std::vector<Transfer> transfers = Transfers(*this, others);
+  const int fans = std::max(rays / kFan, 1);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     for (std::size_t k = 0; k < vertices_[i].size(); ++k) {
       ShadeVertex& vertex = parts_[i].vertices[k];
+      const Eigen::Vector3f normal = vertex.normal();
       Eigen::Vector3f a, b;
-      Tangents(vertex.normal(), &a, &b);
-      const Eigen::Vector3f from = vertices_[i][k] + kStandOff_m * vertex.normal();
+      Tangents(normal, &a, &b);
       int open = 0;
-      for (int r = 0; r < rays; ++r) {
-        // Cosine-weighted spiral: every ray counts alike.
-        const double radius = std::sqrt((r + 0.5) / rays), angle = 2.399963229728653 * r;
-        const auto x = static_cast<float>(radius * std::cos(angle)),
-                   y = static_cast<float>(radius * std::sin(angle));
-        const auto z = static_cast<float>(std::sqrt(1 - radius * radius));
-        open += !AnyOccludes(rays_, transfers, from, x * a + y * b + z * vertex.normal(), 0.35f);
+      for (int f = 0; f < fans; ++f) {
+        // Cosine-weighted: every ray counts alike.
+        Fan fan;
+        for (int r = 0; r < kFan; ++r) {
+          fan[static_cast<std::size_t>(r)] = Spread(f * kFan + r, fans * kFan, 1, normal, a, b);
+        }
+        open += CountOpen(rays_, transfers, vertices_[i][k] + kStandOff_m * normal, fan, 0.35f);
       }
-      vertex.openness = static_cast<float>(open) / static_cast<float>(rays);
+      vertex.openness = static_cast<float>(open) / static_cast<float>(fans * kFan);
     }
   }
 }
@@ -117,14 +137,10 @@ void Actor::ComputeKeyLight(const Lighting& light, const std::vector<const Actor
       X_SO_.linear().transpose().cast<float>() * light.key_direction.normalized();
   Eigen::Vector3f a, b;
   Tangents(to_light, &a, &b);
-  constexpr int kSamples = 8;
-  std::vector<Eigen::Vector3f> directions;
-  for (int r = 0; r < kSamples; ++r) {
-    const double radius = light.key_radius * std::sqrt((r + 0.5) / kSamples),
-                 angle = 2.399963229728653 * r;
-    directions.push_back((to_light + static_cast<float>(radius * std::cos(angle)) * a +
-                          static_cast<float>(radius * std::sin(angle)) * b)
-                             .normalized());
+  Fan fan;
+  for (int r = 0; r < kFan; ++r) {
+    fan[static_cast<std::size_t>(r)] =
+        Spread(r, kFan, static_cast<double>(light.key_radius), to_light, a, b);
   }
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     for (std::size_t k = 0; k < vertices_[i].size(); ++k) {
@@ -132,11 +148,7 @@ void Actor::ComputeKeyLight(const Lighting& light, const std::vector<const Actor
       vertex.key = 0;
       if (vertex.normal().dot(to_light) < -0.35f) continue;
       const Eigen::Vector3f from = vertices_[i][k] + kStandOff_m * vertex.normal();
-      int open = 0;
-      for (const Eigen::Vector3f& direction : directions) {
-        open += !AnyOccludes(rays_, transfers, from, direction, 2.0f);
-      }
-      vertex.key = static_cast<float>(open) / kSamples;
+      vertex.key = static_cast<float>(CountOpen(rays_, transfers, from, fan, 2.0f)) / kFan;
     }
   }
 }

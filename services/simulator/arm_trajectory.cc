@@ -41,6 +41,8 @@ const JointVector& ArmTrajectory::Knot(std::int64_t index) {
 ArmTrajectory::Sample ArmTrajectory::At(double time_s) {
   const auto index = static_cast<std::int64_t>(std::floor(time_s / kKnotS));
   const double s = time_s / kKnotS - static_cast<double>(index);
+  // The shutter may open before the start; a path of the arm has no beginning.
+  if (first_knot_ == kNone) first_knot_ = index - 2;
   const JointVector q3 = Knot(index + 2);  // first: it may drop knots at the front
   const JointVector q0 = Knot(index - 1), q1 = Knot(index), q2 = Knot(index + 1);
   // Hermite with the knots' central differences as velocities (Catmull-Rom).

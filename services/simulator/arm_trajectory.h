@@ -33,7 +33,8 @@ class ArmTrajectory {
   std::function<RigidTransform(double)> camera_path_;
   Eigen::VectorXd q_start_;
   std::deque<JointVector> knots_;
-  std::int64_t first_knot_{-1};
+  static constexpr std::int64_t kNone = INT64_MIN;
+  std::int64_t first_knot_{kNone};
 };
 
 }  // namespace visavis

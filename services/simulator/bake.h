@@ -21,7 +21,7 @@ Texture BakeTexture(const PaintedSurface& surface, int width, int height);
 /// A texture of four texels, all alike: for meshes without one.
 Texture UniformTexture(const Srgb& colour, double gloss, Label label);
 
-/// Texel of a paint with a given change of the normal.
-Texel EncodeTexel(const Paint& paint, const Eigen::Vector3d& normal_change);
+/// Colour, gloss and label of a paint; no change of the normal.
+Texel EncodeTexel(const Paint& paint);
 
 }  // namespace visavis

@@ -24,6 +24,9 @@ Paint PaintSkin(const Subject& subject, const Eigen::Vector3d& p);
 /// Lays brows, eyes, lips and nostrils over the skin's @p paint at @p p.
 void PaintFeatures(const Subject& subject, const Eigen::Vector3d& p, Paint* paint);
 
+/// Whether PaintHair leaves nothing to be seen of what it is laid over.
+bool IsCoveredByHair(const Subject& subject, const Eigen::Vector3d& p);
+
 /// Lays hair, beard or cap over @p paint at @p p. (u, v) as in HeadGrid: strands run along v.
 void PaintHair(const Subject& subject, const Eigen::Vector3d& p, double u, double v, Paint* paint);
 

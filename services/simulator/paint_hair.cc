@@ -51,6 +51,12 @@ Paint PaintStrands(const Subject& subject, double across_mm, double along_mm) {
   return paint;
 }
 
+bool IsCoveredByHair(const Subject& subject, const Vector3d& p) {
+  const bool beanie = subject.hair.kind == HairStyle::Kind::kBeanie;
+  // The ragged edge reaches in by less than four times its amplitude.
+  return InsideHairline(subject, p, false) > (beanie ? 0 : 12 + 4 * subject.hair.raggedness_mm);
+}
+
 void PaintHair(const Subject& subject, const Vector3d& p, double u, double v, Paint* paint) {
   const HairStyle& hair = subject.hair;
   const double inside = InsideHairline(subject, p, hair.kind != HairStyle::Kind::kBeanie);

@@ -12,17 +12,20 @@ using Eigen::Vector3d;
 /// Gaussian spot on the face, mirrored: centre and radii in x and y [mm].
 double Spot(const Vector3d& p, double x, double y, double rx, double ry) {
   const double a = (std::abs(p.x()) - x) / rx, b = (p.y() - y) / ry;
-  return std::exp(-a * a - b * b);
+  const double d2 = a * a + b * b;
+  return d2 < 14 ? std::exp(-d2) : 0;
 }
 
 /// A crease: 1 on the line, falling off over @p width.
 double Crease(double distance, double width) {
-  return std::exp(-(distance / width) * (distance / width));
+  const double t = distance / width;
+  return std::abs(t) < 3.5 ? std::exp(-t * t) : 0;
 }
 
 void PaintWrinkles(const Subject& subject, const Vector3d& p, Paint* paint) {
   const double age = subject.complexion.age, x = std::abs(p.x());
   double depth = 0;
+  if (p.z() > -35) return;
   // Forehead, crow's feet, beside nose and mouth, under the eyes.
   const double wave = p.y() + 2.0 * Noise(0.03 * p, subject.seed + 21);
   depth += 0.5 * SmoothStep(-48, -38, p.y()) * SmoothStep(-6, -14, p.y()) * SmoothStep(48, 25, x) *

@@ -48,8 +48,8 @@ PictureRenderer::PictureRenderer(const Pinhole& camera, int edge_samples)
   }
 }
 
-HeadPixels PictureRenderer::Render(const SceneView& scene, const RigidTransform& X_SC,
-                                   const RgbView& picture, std::uint8_t* labels) {
+void PictureRenderer::Render(const SceneView& scene, const RigidTransform& X_SC,
+                             const RgbView& picture, std::uint8_t* labels, HeadPixels* pixels) {
   VISAVIS_THROW_UNLESS(picture.width == camera_.width && picture.height == camera_.height,
                        picture.width);
   VISAVIS_THROW_UNLESS(picture.stride >= 3 * picture.width, picture.stride);
@@ -60,17 +60,17 @@ HeadPixels PictureRenderer::Render(const SceneView& scene, const RigidTransform&
   for (const Actor* actor : scene.actors) {
     shaders_.emplace_back(*actor, *scene.light, X_SC, static_cast<float>(1 / camera_.fx));
   }
-  HeadPixels pixels;
+  if (pixels != nullptr) *pixels = {};
+  HeadPixels* const count = scene.has_head ? pixels : nullptr;
   MarkTiles(scene, X_SC);
   for (int j = 0; j < tiles_y_; ++j) {
-    for (int i = 0; i < tiles_x_; ++i) RenderTile(scene, i, j, picture, labels, &pixels);
+    for (int i = 0; i < tiles_x_; ++i) RenderTile(scene, i, j, picture, labels, count);
   }
   if (offsets_.size() > 1) {
     FindEdges();
     SmoothEdges(scene, picture);
   }
-  if (scene.has_head) CountOutside(scene, &pixels);
-  return pixels;
+  if (count != nullptr) CountOutside(scene, count);
 }
 
 void PictureRenderer::MarkTiles(const SceneView& scene, const RigidTransform& X_SC) {
@@ -130,7 +130,7 @@ void PictureRenderer::Trace(const SceneView& scene, unsigned mask, HeadPixels* p
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
       if (!batch_.hit[i]) continue;
       owner_[i] = static_cast<std::int8_t>(k);
-      if (pixels == nullptr || k > 0 || !scene.has_head) continue;
+      if (pixels == nullptr || k > 0) continue;
       const Label label = scene.actors[0]->triangle_label(batch_.mesh[i], batch_.triangle[i]);
       pixels->head += IsHead(label);
       pixels->face += IsFace(label);
@@ -196,7 +196,7 @@ void PictureRenderer::RenderTile(const SceneView& scene, int tile_x, int tile_y,
       out[2] = response_.Encode(shaded_.blue[i]);
       sample = {static_cast<std::uint32_t>(owner_[i] + 1) << 8 | batch_.mesh[i], batch_.t[i]};
       label = shaded_.label[i];
-      if (owner_[i] == 0 && scene.has_head) {
+      if (owner_[i] == 0 && pixels != nullptr) {
         const Label part = scene.actors[0]->triangle_label(batch_.mesh[i], batch_.triangle[i]);
         pixels->head_visible += IsHead(part);
         pixels->face_visible += IsFace(part);
@@ -210,20 +210,27 @@ void PictureRenderer::RenderTile(const SceneView& scene, int tile_x, int tile_y,
 void PictureRenderer::FindEdges() {
   edges_.clear();
   const int w = camera_.width, h = camera_.height;
-  const auto differ = [this](int a, int b) {
-    const Sample &p = samples_[static_cast<std::size_t>(a)],
-                 &q = samples_[static_cast<std::size_t>(b)];
-    return p.surface != q.surface || std::abs(p.depth - q.depth) > kDepthEdge_m;
+  // A pixel between two others in a row or column: another surface beside it, or a step in depth
+  // (the slope of a surface seen at a grazing angle is none).
+  const auto is_edge = [this](std::size_t before, std::size_t at, std::size_t after) {
+    const Sample &p = samples_[before], &q = samples_[at], &r = samples_[after];
+    return p.surface != q.surface || r.surface != q.surface ||
+           std::abs(p.depth - 2 * q.depth + r.depth) > kDepthEdge_m;
   };
   for (int tile = 0; tile < tiles_x_ * tiles_y_; ++tile) {
     if (tile_mask_[static_cast<std::size_t>(tile)] == 0) continue;
     const int x0 = tile % tiles_x_ * kTile, y0 = tile / tiles_x_ * kTile;
     for (int y = y0; y < std::min(y0 + kTile, h); ++y) {
+      const auto row = static_cast<std::size_t>(y * w);
+      const auto up = static_cast<std::size_t>(std::max(y - 1, 0) * w);
+      const auto down = static_cast<std::size_t>(std::min(y + 1, h - 1) * w);
       for (int x = x0; x < std::min(x0 + kTile, w); ++x) {
-        const int pixel = y * w + x;
-        if ((x > 0 && differ(pixel, pixel - 1)) || (x + 1 < w && differ(pixel, pixel + 1)) ||
-            (y > 0 && differ(pixel, pixel - w)) || (y + 1 < h && differ(pixel, pixel + w))) {
-          edges_.push_back(pixel);
+        const auto column = static_cast<std::size_t>(x);
+        const auto left = static_cast<std::size_t>(std::max(x - 1, 0));
+        const auto right = static_cast<std::size_t>(std::min(x + 1, w - 1));
+        if (is_edge(row + left, row + column, row + right) ||
+            is_edge(up + column, row + column, down + column)) {
+          edges_.push_back(y * w + x);
         }
       }
     }

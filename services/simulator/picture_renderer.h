@@ -7,16 +7,10 @@
 #include "services/simulator/actor.h"
 #include "services/simulator/background.h"
 #include "services/simulator/colour.h"
+#include "services/simulator/rgb_view.h"
 #include "services/simulator/shader.h"
 
 namespace visavis {
-
-/// RGB pixels of somebody else, rows from the top.
-struct RgbView {
-  std::uint8_t* data;
-  int width, height;
-  int stride;  ///< [bytes] from one row to the next, >= 3 width
-};
 
 /// Everything in front of the cameras at one time.
 struct SceneView {
@@ -47,10 +41,11 @@ class PictureRenderer {
   /// @p edge_samples: 1 (no smoothing), 2, 4, 8 or 16.
   PictureRenderer(const Pinhole& camera, int edge_samples);
 
-  /// Renders what the camera at @p X_SC sees. @p labels, if any: width x height, the Label at each
-  /// pixel's centre. @return what is seen of the first actor, if it is the head.
-  HeadPixels Render(const SceneView& scene, const RigidTransform& X_SC, const RgbView& picture,
-                    std::uint8_t* labels);
+  /// Renders what the camera at @p X_SC sees.
+  /// @param labels  if not null: width x height, the Label at each pixel's centre
+  /// @param pixels  if not null: what is seen of the first actor, if it is the head
+  void Render(const SceneView& scene, const RigidTransform& X_SC, const RgbView& picture,
+              std::uint8_t* labels, HeadPixels* pixels);
 
  private:
   struct Sample {

@@ -112,15 +112,33 @@ void RayScene::Intersect(const Eigen::Vector3f& origin, RayBatch* batch) const {
   }
 }
 
-bool RayScene::Occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
-                        float near_m, float far_m) const {
+void RayScene::Occlude(const Eigen::Vector3f& origin,
+                       const std::array<Eigen::Vector3f, kFan>& directions, float far_m,
+                       unsigned* open) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay ray{
-      origin.x(), origin.y(), origin.z(), near_m, direction.x(), direction.y(), direction.z(), 0,
-      far_m,      ~0u,        0,          0};
-  rtcOccluded1(handles_->scene, &context, &ray);
-  return ray.tfar < 0;
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay8 rays;
+  alignas(32) int valid[kFan];
+  for (unsigned k = 0; k < kFan; ++k) {
+    valid[k] = (*open >> k & 1) != 0 ? -1 : 0;
+    rays.org_x[k] = origin.x();
+    rays.org_y[k] = origin.y();
+    rays.org_z[k] = origin.z();
+    rays.dir_x[k] = directions[k].x();
+    rays.dir_y[k] = directions[k].y();
+    rays.dir_z[k] = directions[k].z();
+    rays.tnear[k] = 0;
+    rays.tfar[k] = far_m;
+    rays.time[k] = 0;
+    rays.mask[k] = ~0u;
+    rays.id[k] = 0;
+    rays.flags[k] = 0;
+  }
+  rtcOccluded8(valid, handles_->scene, &context, &rays);
+  for (unsigned k = 0; k < kFan; ++k) {
+    if (valid[k] != 0 && rays.tfar[k] < 0) *open &= ~(1u << k);
+  }
 }
 
 }  // namespace visavis

@@ -42,9 +42,11 @@ class RayScene {
   /// Traces the batch; rays that hit nothing nearer keep their t.
   void Intersect(const Eigen::Vector3f& origin, RayBatch* batch) const;
 
-  /// True where something lies on the ray within (near_m, far_m) along the unit vector.
-  bool Occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float near_m,
-                float far_m) const;
+  /// Of the eight rays from @p origin along the unit vectors @p directions, clears in @p open the
+  /// bits of those that hit something within @p far_m; looks only at rays whose bit is set.
+  static constexpr int kFan = 8;
+  void Occlude(const Eigen::Vector3f& origin, const std::array<Eigen::Vector3f, kFan>& directions,
+               float far_m, unsigned* open) const;
 
  private:
   struct Handles;

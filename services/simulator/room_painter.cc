@@ -161,7 +161,12 @@ void RoomPainter::PaintRoom(const Srgb& wall) {
   Cabinet({0.30, 0.48, 1.75, 1.28});
   Screen({0.98, 0.05, 1.56, 0.46});
   Carton({0.45, 0.18, 0.83, 0.48});
-  Plant(-0.14, 0.42, 0.34);
+  const Box stool{-0.28, 0.66, 0.04, 1.28};
+  Shadow(stool, 0.05, 0.3);
+  Fill(stool, [&](double x, double y) {
+    return Srgb(Wood(y, x, {0.50, 0.34, 0.22}) * (y < stool.y0 + 0.03 ? 1.15 : 0.9));
+  });
+  Plant(-0.12, 0.48, 0.42);
   Plant(2.05, 0.30, 0.50);
 }
 

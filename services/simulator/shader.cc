@@ -55,6 +55,7 @@ Shader::Shader(const Actor& actor, const Lighting& light, const RigidTransform& 
 void Shader::Gather(const RayBatch& batch, const float* x, const float* y, const std::uint8_t* rays,
                     int count, Points* points, Label* labels) const {
   const Eigen::Matrix3f& R = R_OC_;
+  std::array<Texture::Tap, RayBatch::kMax> taps;
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(rays[k]), o = static_cast<std::size_t>(k);
     const Actor::ShadePart& part = actor_->parts()[batch.mesh[i]];
@@ -66,22 +67,29 @@ void Shader::Gather(const RayBatch& batch, const float* x, const float* y, const
         Actor::Mix(part.vertices[ia], part.vertices[ib], part.vertices[ic], u, v, w);
     const float footprint = batch.t[i] * pixel_angle_rad_ * part.texels_per_m[triangle];
     const int level = footprint > 1 ? std::ilogb(footprint * 1.25f) : 0;
-    const Texel texel = part.texture->Sample(mixed.u, mixed.v, level);
-    constexpr float kSlope = 1.0f / 64;
-    points->nx[o] = mixed.nx + kSlope * static_cast<float>(texel.dx - 128);
-    points->ny[o] = mixed.ny + kSlope * static_cast<float>(texel.dy - 128);
-    points->nz[o] = mixed.nz + kSlope * static_cast<float>(texel.dz - 128);
+    taps[o] = part.texture->Locate(mixed.u, mixed.v, level);
+    Texture::Prefetch(taps[o]);
+    points->nx[o] = mixed.nx;
+    points->ny[o] = mixed.ny;
+    points->nz[o] = mixed.nz;
     points->vx[o] = -(R(0, 0) * x[i] + R(0, 1) * y[i] + R(0, 2));
     points->vy[o] = -(R(1, 0) * x[i] + R(1, 1) * y[i] + R(1, 2));
     points->vz[o] = -(R(2, 0) * x[i] + R(2, 1) * y[i] + R(2, 2));
     points->openness[o] = mixed.openness;
     points->key[o] = mixed.key;
-    constexpr float kUnit = 1.0f / 255;
+  }
+  for (int k = 0; k < count; ++k) {
+    const auto o = static_cast<std::size_t>(k);
+    const Texel texel = Texture::Fetch(taps[o]);
+    constexpr float kSlope = 1.0f / 64, kUnit = 1.0f / 255;
+    points->nx[o] += kSlope * static_cast<float>(texel.dx - 128);
+    points->ny[o] += kSlope * static_cast<float>(texel.dy - 128);
+    points->nz[o] += kSlope * static_cast<float>(texel.dz - 128);
     points->red[o] = Squared(kUnit * static_cast<float>(texel.red));
     points->green[o] = Squared(kUnit * static_cast<float>(texel.green));
     points->blue[o] = Squared(kUnit * static_cast<float>(texel.blue));
     points->gloss[o] = kUnit * static_cast<float>(texel.gloss);
-    labels[i] = actor_->bystander() ? Label::kBystander : texel.label;
+    labels[rays[k]] = actor_->bystander() ? Label::kBystander : texel.label;
     const Response& response = ResponseOf(texel.label);
     points->wrap_red[o] = response.wrap_red;
     points->wrap_green[o] = response.wrap_green;

@@ -1,107 +1,242 @@
 #include "services/simulator/simulated_world.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "common/core/random.h"
-#include "common/geometry/head_angles.h"
-#include "services/simulator/figure.h"
+#include "common/config/config_error.h"
+#include "services/simulator/mesh_file.h"
 
 namespace visavis {
 namespace {
 
 constexpr int kOpennessRays = 48;
-constexpr std::size_t kNoiseSize = std::size_t{1} << 22;
+
+Figure MakeFigure(const SceneConfig& scene) {
+  scene.ValidateOrThrow();
+  if (!scene.mesh_file.empty()) {
+    return LoadFigure(scene.mesh_file, {scene.mesh_scale, scene.mesh_y_up,
+                                        Eigen::Vector3d::Map(scene.mesh_origin_m.data())});
+  }
+  FigureDetail detail;
+  detail.texture_size = scene.texture_size;
+  return BuildFigure(NamedSubject(scene.subject), detail);
+}
+
+Figure MakeBystander(const SceneConfig& scene) {
+  if (scene.second_head.empty()) return {};
+  FigureDetail detail;
+  detail.texture_size = std::min(scene.texture_size, 512);
+  return BuildFigure(NamedSubject(scene.second_head), detail);
+}
+
+BackgroundConfig WallOf(const SceneConfig& scene) {
+  BackgroundConfig config;
+  config.wall_z_m = 1e-3 * scene.wall_z_mm;
+  config.skin_coloured = scene.skin_coloured_wall;
+  if (config.skin_coloured && scene.mesh_file.empty()) {
+    config.skin = NamedSubject(scene.subject).complexion.skin;
+  }
+  return config;
+}
+
+/// Where the body is when the head is at X_SM: upright, joined at the neck, turned a little along.
+RigidTransform BodyPose(const RigidTransform& X_SM, const Eigen::Vector3d& p_M_neck) {
+  const Eigen::Matrix3d R_SB = ExpRotation(0.2 * LogRotation(X_SM.linear()));
+  return MakeTransform(R_SB, X_SM * p_M_neck - R_SB * p_M_neck);
+}
 
 }  // namespace
 
-struct SimulatedWorld::Scene {
-  Scene(const Subject& subject, std::uint64_t seed)
-      : background({}, seed),
-        figure(BuildFigure(subject)),
-        head(figure.head, false),
-        body(figure.body, false) {
-    head.ComputeOpenness({&body}, kOpennessRays);
-    body.ComputeOpenness({&head}, kOpennessRays);
+void SceneConfig::ValidateOrThrow() const {
+  for (const auto& [key, value] :
+       {std::pair{"scene.subject", subject}, {"scene.second_head", second_head}}) {
+    if (value.empty() && key != std::string("scene.subject")) continue;
+    try {
+      NamedSubject(value);
+    } catch (const std::invalid_argument& e) {
+      throw FieldError(key, value, e.what());
+    }
   }
-  Background background;
-  Lighting light;
-  Figure figure;
-  Actor head, body;
-  RigidTransform lit_X_SM{RigidTransform::Identity()};
-  bool is_lit{false};
-};
+}
 
-SimulatedWorld::SimulatedWorld(const WorldConfig& config, const StereoRig& rig, std::uint64_t seed)
-    : config_(config),
+SimulatedWorld::SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig& scene,
+                               const SensorConfig& sensor, const StereoRig& rig,
+                               const RigidTransform& X_WC0, std::uint64_t seed)
+    : SimulatedWorld(scenario, scene, sensor, rig, X_WC0, seed, MakeFigure(scene)) {}
+
+SimulatedWorld::SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig& scene,
+                               const SensorConfig& sensor, const StereoRig& rig,
+                               const RigidTransform& X_WC0, std::uint64_t seed, Figure figure)
+    : scenario_(scenario, X_WC0, seed),
+      scene_(scene),
+      sensor_config_(sensor),
       rig_(rig),
-      seed_(seed),
-      scene_(std::make_unique<Scene>(NamedSubject(config.subject), seed)),
-      right_(rig.right, config.edge_samples),
-      left_(rig.left, config.edge_samples),
-      right_rgb_(static_cast<std::size_t>(3 * rig.right.width * rig.right.height)),
-      left_rgb_(static_cast<std::size_t>(3 * rig.left.width * rig.left.height)),
-      noise_(kNoiseSize) {
-  Random random(seed + 101);
-  for (auto& n : noise_) {
-    n = static_cast<std::int8_t>(
-        std::lround(std::clamp(config.noise_sigma * random.Normal(), -120.0, 120.0)));
+      X_SW_(X_WC0.inverse()),
+      figure_(std::move(figure)),
+      bystander_figure_(MakeBystander(scene)),
+      background_(WallOf(scene), seed),
+      light_(scene.light == "side" ? Lighting::Side() : Lighting()),
+      sensor_(sensor, seed),
+      right_(rig.right, scene.edge_samples),
+      left_(rig.left, scene.edge_samples) {
+  rig.ValidateOrThrow();
+  head_ = std::make_unique<Actor>(figure_.head, false);
+  std::vector<const Actor*> bodies;
+  if (!figure_.body.empty()) {
+    body_ = std::make_unique<Actor>(figure_.body, false);
+    bodies.push_back(body_.get());
+    body_->ComputeOpenness({head_.get()}, kOpennessRays);
+  }
+  head_->ComputeOpenness(bodies, kOpennessRays);
+  if (!bystander_figure_.head.empty()) {
+    bystander_head_ = std::make_unique<Actor>(bystander_figure_.head, true);
+    bystander_body_ = std::make_unique<Actor>(bystander_figure_.body, true);
+    bystander_head_->ComputeOpenness({bystander_body_.get()}, kOpennessRays);
+    bystander_body_->ComputeOpenness({bystander_head_.get()}, kOpennessRays);
+    RigidTransform X_SM = RigidTransform::Identity();
+    X_SM.translation() = 1e-3 * Eigen::Vector3d::Map(scene.second_head_mm.data());
+    bystander_head_->set_X_SO(X_SM);
+    bystander_body_->set_X_SO(X_SM);
+    bystander_head_->ComputeKeyLight(light_, {bystander_body_.get()});
+    bystander_body_->ComputeKeyLight(light_, {bystander_head_.get()});
+  }
+  if (scene.occluded_share > 0) {
+    hand_parts_ = BuildHand(scene.mesh_file.empty() ? NamedSubject(scene.subject).complexion.skin
+                                                    : Srgb(0.78, 0.6, 0.5));
+    hand_ = std::make_unique<Actor>(hand_parts_, false);
+    hand_->ComputeOpenness({}, kOpennessRays);
+    PlaceHand();
   }
 }
 
 SimulatedWorld::~SimulatedWorld() = default;
 
-// The body follows the head a little, as it does; the light is baked anew when the head has turned.
-void SimulatedWorld::PlaceHead(const RigidTransform& X_SM) {
-  const Vector6d phi = PhiFromTransform(X_SM);
-  RigidTransform X_SB = MakeTransform(
-      RotationFromAngles({0.2 * phi[3], 0.2 * phi[4], 0.1 * phi[5]}), Eigen::Vector3d::Zero());
-  const Eigen::Vector3d& p_M_neck = scene_->figure.p_M_neck_m;
-  X_SB.translation() = X_SM * p_M_neck - X_SB.linear() * p_M_neck;
-  if (scene_->is_lit && X_SM.isApprox(scene_->lit_X_SM, 1e-12)) return;
-  scene_->head.set_X_SO(X_SM);
-  scene_->body.set_X_SO(X_SB);
-  scene_->head.Bend(X_SM.inverse() * X_SB);
-  scene_->head.ComputeKeyLight(scene_->light, {&scene_->body});
-  scene_->body.ComputeKeyLight(scene_->light, {&scene_->head});
-  scene_->lit_X_SM = X_SM;
-  scene_->is_lit = true;
-}
-
-void SimulatedWorld::AddNoise(std::uint64_t seed, std::vector<std::uint8_t>* picture) const {
-  if (config_.noise_sigma == 0) return;
-  Random random(seed);
-  const auto start =
-      static_cast<std::size_t>(random.Index(static_cast<int>(kNoiseSize - picture->size())));
-  const std::int8_t* noise = noise_.data() + start;
-  std::uint8_t* pixels = picture->data();
-  for (std::size_t i = 0; i < picture->size(); ++i) {
-    const int value = pixels[i] + noise[i];
-    pixels[i] = static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
-  }
-}
-
-const SimulatedWorld::Pictures& SimulatedWorld::Render(const RigidTransform& X_SC,
-                                                       const RigidTransform& X_SM,
-                                                       bool head_present, std::int64_t frame) {
-  SceneView view{{}, head_present, &scene_->background, &scene_->light};
-  if (head_present) {
-    PlaceHead(X_SM);
-    view.actors = {&scene_->head, &scene_->body};
-  }
-  const auto render = [&](PictureRenderer* renderer, const Pinhole& camera,
-                          const RigidTransform& X_SK, std::uint64_t side,
-                          std::vector<std::uint8_t>* rgb, ImageView* out) {
-    const int stride = 3 * camera.width;
-    const HeadPixels pixels =
-        renderer->Render(view, X_SK, {rgb->data(), camera.width, camera.height, stride}, nullptr);
-    AddNoise(seed_ * 7919 + 2 * static_cast<std::uint64_t>(frame) + side, rgb);
-    *out = {rgb->data(), camera.width, camera.height, stride, rgb->size(), PixelFormat::kRgb};
-    return pixels;
+void SimulatedWorld::KeepLabels() {
+  keep_labels_ = true;
+  const auto pixels = [](const Pinhole& camera) {
+    return static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   };
-  pictures_.head = render(&right_, rig_.right, X_SC, 0, &right_rgb_, &pictures_.right);
-  render(&left_, rig_.left, X_SC * rig_.X_CL, 1, &left_rgb_, &pictures_.left);
-  return pictures_;
+  labels_[0].resize(pixels(rig_.right));
+  labels_[1].resize(pixels(rig_.left));
+}
+
+void SimulatedWorld::PlaceHand() {
+  // Before the face, fingers slanting up; slid in from the image's lower left until it hides the
+  // share asked for, seen by a coarse camera in the nominal place.
+  const Eigen::Matrix3d R = (Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()) *
+                             Eigen::AngleAxisd(-0.25, Eigen::Vector3d::UnitY()))
+                                .toRotationMatrix();
+  const Pinhole coarse{160, 120, 200, 200, 79.5, 59.5, {}};
+  PictureRenderer renderer(coarse, 1);
+  std::vector<std::uint8_t> pixels(160 * 120 * 3);
+  RigidTransform X_SM_front = RigidTransform::Identity();
+  X_SM_front.translation().z() = 1e-3 * scenario_.config().distance_mm;
+  head_->set_X_SO(X_SM_front);
+  const auto hidden = [&](double way) {
+    const Eigen::Vector3d p_M(-0.20 + 0.20 * way, 0.19 - 0.14 * way, -0.165);
+    X_MHand_ = MakeTransform(R, p_M);
+    hand_->set_X_SO(X_SM_front * X_MHand_);
+    const SceneView view{{head_.get(), hand_.get()}, true, &background_, &light_};
+    HeadPixels seen;
+    renderer.Render(view, RigidTransform::Identity(), {pixels.data(), 160, 120, 480}, nullptr,
+                    &seen);
+    return 1 - seen.face_share();
+  };
+  double low = 0, high = 1;
+  if (hidden(high) < scene_.occluded_share) {
+    throw FieldError("scene.occluded_share", std::to_string(scene_.occluded_share),
+                     "the hand hides at most " + std::to_string(hidden(high)) + " of this face");
+  }
+  for (int i = 0; i < 14; ++i) {
+    const double middle = 0.5 * (low + high);
+    (hidden(middle) < scene_.occluded_share ? low : high) = middle;
+  }
+  hidden(high);
+}
+
+bool SimulatedWorld::HandShown(double t_s) const {
+  return hand_ != nullptr && t_s >= scene_.occluded_from_s && t_s < scene_.occluded_until_s;
+}
+
+void SimulatedWorld::Pose(double t_s) {
+  const RigidTransform X_SM = X_SW_ * scenario_.HeadPose(t_s);
+  const bool with_hand = HandShown(t_s);
+  if (lit_X_SM_ && lit_X_SM_->matrix() == X_SM.matrix() && lit_with_hand_ == with_hand) return;
+  lit_X_SM_ = X_SM;
+  lit_with_hand_ = with_hand;
+  head_->set_X_SO(X_SM);
+  std::vector<const Actor*> actors{head_.get()};
+  if (body_) {
+    const RigidTransform X_SB = BodyPose(X_SM, figure_.p_M_neck_m);
+    body_->set_X_SO(X_SB);
+    head_->Bend(X_SM.inverse() * X_SB);
+    actors.push_back(body_.get());
+  }
+  if (with_hand) {
+    hand_->set_X_SO(X_SM * X_MHand_);
+    actors.push_back(hand_.get());
+  }
+  for (Actor* actor : {head_.get(), body_.get(), with_hand ? hand_.get() : nullptr}) {
+    if (actor == nullptr) continue;
+    std::vector<const Actor*> others;
+    for (const Actor* other : actors) {
+      if (other != actor) others.push_back(other);
+    }
+    actor->ComputeKeyLight(light_, others);
+  }
+}
+
+HeadPixels SimulatedWorld::RenderInstant(double t_s, const RigidTransform& X_WC,
+                                         const RgbView& right, const RgbView& left) {
+  SceneView view{{}, false, &background_, &light_};
+  if (scenario_.HeadPresent(t_s)) {
+    Pose(t_s);
+    view.has_head = true;
+    view.actors.push_back(head_.get());
+    if (body_) view.actors.push_back(body_.get());
+    if (HandShown(t_s)) view.actors.push_back(hand_.get());
+  }
+  if (bystander_head_) {
+    view.actors.push_back(bystander_head_.get());
+    view.actors.push_back(bystander_body_.get());
+  }
+  const RigidTransform X_SC = X_SW_ * X_WC;
+  HeadPixels pixels;
+  const auto labels = [&](std::size_t i) { return keep_labels_ ? labels_[i].data() : nullptr; };
+  right_.Render(view, X_SC, right, labels(0), &pixels);
+  left_.Render(view, X_SC * rig_.X_CL, left, labels(1), nullptr);
+  return pixels;
+}
+
+SimulatedWorld::Truth SimulatedWorld::Render(double t_s, std::int64_t picture_number,
+                                             const CameraPath& X_WC, const RgbView& right,
+                                             const RgbView& left) {
+  Truth truth;
+  truth.X_WC = X_WC(t_s);
+  truth.X_WM = scenario_.HeadPose(t_s);
+  truth.X_CM = truth.X_WC.inverse() * truth.X_WM;
+  truth.head_present = scenario_.HeadPresent(t_s);
+  HeadPixels pixels;
+  if (sensor_config_.blur_samples == 1) {
+    pixels = RenderInstant(t_s, truth.X_WC, right, left);
+  } else {
+    right_sum_.Clear(right.width, right.height);
+    left_sum_.Clear(left.width, left.height);
+    const int n = sensor_config_.blur_samples;
+    for (int k = 0; k < n; ++k) {
+      const double t = t_s + 1e-3 * sensor_config_.exposure_ms * ((k + 0.5) / n - 0.5);
+      const HeadPixels seen = RenderInstant(t, X_WC(t), right, left);
+      if (k == n / 2) pixels = seen;
+      right_sum_.Add(right);
+      left_sum_.Add(left);
+    }
+    right_sum_.Write(right);
+    left_sum_.Write(left);
+  }
+  sensor_.Expose(picture_number, 0, t_s, right);
+  sensor_.Expose(picture_number, 1, t_s, left);
+  truth.head_visible_share = pixels.head_share();
+  truth.face_visible_share = pixels.face_share();
+  return truth;
 }
 
 }  // namespace visavis

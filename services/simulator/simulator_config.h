@@ -14,7 +14,8 @@ struct SimulatorConfig {
   template <typename A>
   void Serialize(A* a) {
     a->Visit("scenario", &scenario);
-    a->Visit("world", &world);
+    a->Visit("scene", &scene);
+    a->Visit("sensor", &sensor);
     a->Visit("seed", &seed, InRange<std::int64_t>(0, 1'000'000'000));
     a->Visit("seconds", &seconds, InRange(0.0, 1e6, "s"));
     a->Visit("rig_file", &rig_file);
@@ -30,7 +31,8 @@ struct SimulatorConfig {
   void ValidateOrThrow() const;
 
   ScenarioConfig scenario;
-  WorldConfig world;
+  SceneConfig scene;
+  SensorConfig sensor;
   std::int64_t seed{1};  ///< of all that is random: same scenario, same seed, same bytes
   double seconds{0};     ///< how long; 0: until stopped
   std::string rig_file;  ///< rig.yaml with an arm; empty: the demo's

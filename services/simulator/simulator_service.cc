@@ -43,7 +43,7 @@ ServiceTraits SimulatorService::Traits() {
   traits.aliases = {
       {"--scenario", "scenario.name", "shuttle_x, orbit_theta, static, moving_head, random_poses"},
       {"--period", "scenario.period_s", "[s] of shuttle_x and orbit_theta"},
-      {"--subject", "world.subject", "who stands before the cameras, adult_a ..."},
+      {"--subject", "scene.subject", "who stands before the cameras, adult_a ..."},
       {"--seconds", "seconds", "how long; 0: until stopped"},
       {"--seed", "seed", "of all that is random"}};
   return traits;
@@ -54,11 +54,13 @@ SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceC
       context_(context),
       rig_(LoadRig(config.rig_file)),
       X_WS_(DemoCameraPose()),
-      scenario_(config.scenario, X_WS_, static_cast<std::uint64_t>(config.seed)),
       hand_eye_(MakeHandEye(rig_)),
+      world_(config.scenario, config.scene, config.sensor, rig_.rig, X_WS_,
+             static_cast<std::uint64_t>(config.seed)),
       trajectory_(hand_eye_, Posture(),
-                  [this](double time_s) { return scenario_.CameraPose(time_s); }),
-      world_(config.world, rig_.rig, static_cast<std::uint64_t>(config.seed)),
+                  [this](double time_s) { return world_.scenario().CameraPose(time_s); }),
+      right_rgb_(static_cast<std::size_t>(3 * rig_.rig.right.width * rig_.rig.right.height)),
+      left_rgb_(static_cast<std::size_t>(3 * rig_.rig.left.width * rig_.rig.left.height)),
       start_us_(context.live ? context.clock->NowUs() + 100'000 : kFastStartUs),
       next_rig_us_(start_us_) {
   rig_message_ = ToMessage(rig_, 0);
@@ -103,8 +105,8 @@ void SimulatorService::Wake() {
 
 void SimulatorService::UpdateStatus() { context_.status->SetCounter("late_pairs", late_); }
 
-RigidTransform SimulatorService::CameraAt(std::int64_t utime_us) {
-  return hand_eye_.CameraPose(trajectory_.At(TimeOf(utime_us)).q);
+RigidTransform SimulatorService::CameraAt(double time_s) {
+  return hand_eye_.CameraPose(trajectory_.At(time_s).q);
 }
 
 void SimulatorService::PublishRig(std::int64_t now_us) {
@@ -137,25 +139,27 @@ void SimulatorService::PrepareFrame() {
     context_.status->Dropped(1);
   }
   const std::int64_t utime_us = FrameTime(frame_);
-  camera_X_WC_ = CameraAt(utime_us);
-  const double time_s = TimeOf(utime_us);
-  const RigidTransform X_WM = scenario_.HeadPose(time_s);
-  const bool present = scenario_.HeadPresent(time_s);
-  const RigidTransform X_SW = X_WS_.inverse();
-  const auto& pictures = world_.Render(X_SW * camera_X_WC_, X_SW * X_WM, present, frame_);
+  const auto truth = world_.Render(
+      TimeOf(utime_us), frame_, [this](double time_s) { return CameraAt(time_s); },
+      {right_rgb_.data(), rig_.rig.right.width, rig_.rig.right.height, 3 * rig_.rig.right.width},
+      {left_rgb_.data(), rig_.rig.left.width, rig_.rig.left.height, 3 * rig_.rig.left.width});
+  camera_X_WC_ = truth.X_WC;
   truth_X_CM_.reset();
-  if (present) truth_X_CM_ = camera_X_WC_.inverse() * X_WM;
+  if (truth.head_present) truth_X_CM_ = truth.X_CM;
   images_.utime = utime_us;
-  FillImage(pictures.left, images_t::LEFT, &left_jpeg_, &images_.images[0]);
-  FillImage(pictures.right, images_t::RIGHT, &right_jpeg_, &images_.images[1]);
+  FillImage(rig_.rig.left, left_rgb_, &left_jpeg_, &images_.images[0]);
+  FillImage(rig_.rig.right, right_rgb_, &right_jpeg_, &images_.images[1]);
   prepared_ = true;
 }
 
-void SimulatorService::FillImage(const ImageView& picture, std::int16_t, JpegEncoder* jpeg,
-                                 image_t* image) {
+void SimulatorService::FillImage(const Pinhole& camera, const std::vector<std::uint8_t>& rgb,
+                                 JpegEncoder* jpeg, image_t* image) {
+  const ImageView picture{rgb.data(),       camera.width, camera.height,
+                          3 * camera.width, rgb.size(),   PixelFormat::kRgb};
   SetImage(config_.image_format == "jpeg" ? jpeg->Encode(picture, config_.jpeg_quality) : picture,
            images_.utime, image);
   AddMetadata("seq", frame_, image);
+  AddMetadata("exposure_us", std::llround(1000 * config_.sensor.exposure_ms), image);
   AddMetadata("skew_us", 0, image);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "common/image/image_decoder.h"
 #include "common/rigs/rig_description.h"
@@ -39,21 +40,22 @@ class SimulatorService final : public Service {
     return 1e-6 * static_cast<double>(utime_us - start_us_);
   }
   std::int64_t FrameTime(std::int64_t frame) const;
-  RigidTransform CameraAt(std::int64_t utime_us);
+  RigidTransform CameraAt(double time_s);
   void PublishArmStates(std::int64_t until_us);
   void PublishRig(std::int64_t now_us);
   void PrepareFrame();
   void PublishFrame();
-  void FillImage(const ImageView& picture, std::int16_t type, JpegEncoder* jpeg, image_t* image);
+  void FillImage(const Pinhole& camera, const std::vector<std::uint8_t>& rgb, JpegEncoder* jpeg,
+                 image_t* image);
 
   const SimulatorConfig config_;
   const ServiceContext context_;
   RigDescription rig_;
   RigidTransform X_WS_;
-  Scenario scenario_;
   HandEye hand_eye_;
-  ArmTrajectory trajectory_;
   SimulatedWorld world_;
+  ArmTrajectory trajectory_;
+  std::vector<std::uint8_t> right_rgb_, left_rgb_;
   JpegEncoder right_jpeg_, left_jpeg_;
 
   std::int64_t start_us_;

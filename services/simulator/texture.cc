@@ -69,29 +69,36 @@ void Texture::BuildLevels() {
   }
 }
 
-Texel Texture::Sample(float u, float v, int level) const {
+Texture::Tap Texture::Locate(float u, float v, int level) const {
   const Level& l =
       levels_[static_cast<std::size_t>(std::clamp(level, 0, static_cast<int>(levels_.size()) - 1))];
   // Fixed point, 1/256 texel; texel centres at half-integers.
   const float x = std::clamp(u, 0.0f, 1.0f) * static_cast<float>(l.width) * 256.0f;
   const float y = std::clamp(v, 0.0f, 1.0f) * static_cast<float>(l.height) * 256.0f;
-  const int fx = std::max(static_cast<int>(x) - 128, 0),
-            fy = std::max(static_cast<int>(y) - 128, 0);
+  const int fx = std::max(static_cast<int>(x) - 128, 0);
+  const int fy = std::max(static_cast<int>(y) - 128, 0);
   const int x0 = std::min(fx >> 8, l.width - 1), y0 = std::min(fy >> 8, l.height - 1);
-  const int right = x0 + 1 < l.width ? 1 : 0, down = y0 + 1 < l.height ? l.width : 0;
   const std::uint32_t a = fx & 255, b = fy & 255;
-  const Texel* texel = texels_.data() + l.offset + static_cast<std::size_t>(y0 * l.width + x0);
-  // Weights of the four, sum 256; eight bytes are mixed at once in 16-bit lanes.
   const std::uint32_t w11 = (a * b) >> 8, w10 = a - w11, w01 = b - w11, w00 = 256 - a - b + w11;
-  const Lanes sum = Load(texel) * static_cast<std::uint16_t>(w00) +
-                    Load(texel + right) * static_cast<std::uint16_t>(w10) +
-                    Load(texel + down) * static_cast<std::uint16_t>(w01) +
-                    Load(texel + down + right) * static_cast<std::uint16_t>(w11);
+  return {texels_.data() + l.offset + static_cast<std::size_t>(y0 * l.width + x0),
+          x0 + 1 < l.width ? 1 : 0,
+          y0 + 1 < l.height ? l.width : 0,
+          {static_cast<std::uint16_t>(w00), static_cast<std::uint16_t>(w10),
+           static_cast<std::uint16_t>(w01), static_cast<std::uint16_t>(w11)}};
+}
+
+Texel Texture::Fetch(const Tap& tap) {
+  // Eight bytes are mixed at once, in 16-bit lanes.
+  const Lanes sum = Load(tap.corner) * tap.weights[0] +
+                    Load(tap.corner + tap.right) * tap.weights[1] +
+                    Load(tap.corner + tap.down) * tap.weights[2] +
+                    Load(tap.corner + tap.down + tap.right) * tap.weights[3];
   const Bytes mixed = __builtin_convertvector(sum >> 8, Bytes);
   Texel result;
   std::memcpy(static_cast<void*>(&result), &mixed, 8);
-  const Texel* nearest = texel + (a >= 128 ? right : 0) + (b >= 128 ? down : 0);
-  result.label = nearest->label;
+  const int to_right = tap.weights[1] + tap.weights[3], to_bottom = tap.weights[2] + tap.weights[3];
+  result.label =
+      tap.corner[(to_right >= 128 ? tap.right : 0) + (to_bottom >= 128 ? tap.down : 0)].label;
   return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -36,9 +37,25 @@ class Texture {
   /// Computes the coarser levels: colours and normals averaged, labels by majority.
   void BuildLevels();
 
-  /// Bilinear between the four texels around (u, v) in [0, 1] of @p level (clamped to those that
-  /// exist; edges repeat); the label is the nearest texel's.
-  Texel Sample(float u, float v, int level) const;
+  /// Four neighbouring texels and their weights, of sum 256: top left, top right, bottom left,
+  /// bottom right.
+  struct Tap {
+    const Texel* corner;
+    int right, down;  ///< distances from the corner; 0 at the texture's edge
+    std::array<std::uint16_t, 4> weights;
+  };
+
+  /// The texels round (u, v) in [0, 1] of @p level (clamped to those that exist; edges repeat).
+  Tap Locate(float u, float v, int level) const;
+
+  /// Asks the processor to fetch them.
+  static void Prefetch(const Tap& tap) {
+    __builtin_prefetch(tap.corner);
+    __builtin_prefetch(tap.corner + tap.down);
+  }
+
+  /// Bilinear mean of the four; the label is that of the heaviest.
+  static Texel Fetch(const Tap& tap);
 
   int num_levels() const { return static_cast<int>(levels_.size()); }
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "services/simulator/figure.h"
+
+namespace visavis {
+
+/// How a mesh file becomes a head.
+struct MeshFileOptions {
+  double scale{1};  ///< metres per unit of the file
+  bool y_up{true};  ///< the file's axes are x right, y up, z towards the viewer (glTF); false: M's
+  Eigen::Vector3d p_origin_m{0, 0, 0};  ///< M's origin, in the scaled file's own axes
+};
+
+/// Reads a head from OBJ, glTF or whatever assimp reads. Each mesh is labelled by its material's
+/// name (LabelFromMaterialName) and takes its diffuse colour; pictures are not read. Clothes do not
+/// turn with the head. p_M_neck is left as it is by default.
+/// @throws std::invalid_argument naming the file and what is wrong: unreadable, no triangles, a
+/// material of an unknown kind, a head smaller than 0.1 m or larger than 1 m (a wrong scale).
+Figure LoadFigure(const std::string& filename, const MeshFileOptions& options);
+
+}  // namespace visavis
