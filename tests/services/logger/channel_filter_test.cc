@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "services/logger/log_name.h"
-
 namespace visavis {
 namespace {
 
@@ -29,12 +27,6 @@ TEST(ChannelFilterTest, EndlesslyManyNamesAreStillJudgedRight) {
     EXPECT_TRUE(filter.Takes("A" + std::to_string(i)));
     EXPECT_FALSE(filter.Takes("B" + std::to_string(i)));
   }
-}
-
-TEST(LogNameTest, NamesSortByTimeInUtc) {
-  EXPECT_EQ(LogName("visavis", 0, 0), "visavis-19700101T000000Z.lcm");
-  EXPECT_EQ(LogName("run", 1'732'295'101'999'999, 0), "run-20241122T170501Z.lcm");
-  EXPECT_EQ(LogName("run", 1'732'295'101'999'999, 2), "run-20241122T170501Z-2.lcm");
 }
 
 }  // namespace
