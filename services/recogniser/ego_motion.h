@@ -24,7 +24,8 @@ class EgoMotion {
   /// "auto", "arm", "camera_pose", "none". @throws std::invalid_argument for another word.
   static Choice ParseChoice(const std::string& word);
 
-  /// Takes over the arm of a rig. @throws std::invalid_argument naming what is wrong with the arm.
+  /// Takes over the arm of a rig, or none. @throws std::invalid_argument naming what is wrong with
+  /// the arm; then nothing is changed.
   void SetRig(const RigDescription& rig);
 
   /// @return why the state was not taken; empty: taken, or there is no arm to take it.
