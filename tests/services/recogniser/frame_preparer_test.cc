@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "services/recogniser/packed_map.h"
 #include "tests/services/recogniser/published_settings.h"
 #include "tests/support/malloc_counter.h"
 
@@ -70,6 +71,22 @@ TEST(FramePreparerTest, OneDistortedCameraIsUndistortedAlone) {
   const StereoFrame frame = preparer.Prepare(ImagesOf(painted));
   EXPECT_EQ(frame.right->data, painted.right->data);
   EXPECT_NE(frame.left->data, painted.left->data);
+}
+
+// The corners of an undistorted pincushion picture lie outside the camera's. They must count as
+// what lies outside the image: white, neither hair nor skin.
+TEST(FramePreparerTest, WhatTheLensDoesNotShowIsWhite) {
+  StereoRig rig = SmallRig();
+  rig.right.distortion[0] = 0.6;
+  const OwnedImage black = FlatImage(320, 240, 0, 0, 0);
+  FramePreparer preparer(rig);
+  const ImageView picture = *preparer.Prepare({0, black.view, std::nullopt, 0}).right;
+  PackedMap map(320, 240);
+  map.Build(picture, {});
+  for (const int x : {0, 319}) {
+    for (const int y : {0, 239}) EXPECT_EQ(map.at(x, y), 0u) << x << ' ' << y;
+  }
+  EXPECT_NE(map.at(160, 120), 0u);
 }
 
 TEST(FramePreparerTest, GrayPicturesAreUndistortedToo) {
