@@ -39,9 +39,9 @@ std::string EgoMotion::AddCameraPose(std::int64_t utime_us, const RigidTransform
   return verdict == SampleVerdict::kAccepted ? "" : poses_.poses().DescribeLastRejection();
 }
 
-void EgoMotion::Clear() {
-  if (arm_) arm_->Clear();
-  poses_.Clear();
+void EgoMotion::ForgetSamplesAfter(std::int64_t utime_us) {
+  if (arm_ && arm_->newest_us() > utime_us) arm_->Clear();
+  if (poses_.newest_us() > utime_us) poses_.Clear();
 }
 
 EgoMotionSource EgoMotion::source() const {

@@ -33,8 +33,9 @@ class EgoMotion {
                           const std::vector<double>& q, const std::vector<double>& qdot);
   std::string AddCameraPose(std::int64_t utime_us, const RigidTransform& X_WC);
 
-  /// Forgets all samples: a new session.
-  void Clear();
+  /// Forgets the samples of each source that reaches beyond @p utime_us: they are of an earlier
+  /// session. A source whose new session has begun keeps its samples.
+  void ForgetSamplesAfter(std::int64_t utime_us);
 
   /// The source in use: what was chosen, or for kAuto what has come.
   EgoMotionSource source() const;

@@ -187,12 +187,17 @@ TEST_P(EgoMotionStepTest, NoStepLeadsBackwardsOrNowhere) {
   EXPECT_TRUE(motion_.Between(kT0Us + 10'000, kT0Us + 105'000).known);
 }
 
-TEST_P(EgoMotionStepTest, ClearForgetsAllSamples) {
-  motion_.Clear();
+TEST_P(EgoMotionStepTest, ANewSessionForgetsTheSamplesOfTheOld) {
+  motion_.ForgetSamplesAfter(kT0Us + 50'000);
   EXPECT_TRUE(motion_.missing());
   EXPECT_FALSE(motion_.At(kT0Us + 10'000));
   EXPECT_EQ(AddArm(0, &motion_), "");  // older than before, and taken
   EXPECT_EQ(AddPose(0, &motion_), "");
+}
+
+TEST_P(EgoMotionStepTest, SamplesOfTheNewSessionThatCameBeforeItsFirstPairAreKept) {
+  motion_.ForgetSamplesAfter(kT0Us + 100'000);
+  EXPECT_TRUE(motion_.At(kT0Us + 10'000));
 }
 
 TEST(EgoMotionTest, ARefusedSampleSaysWhy) {
