@@ -41,7 +41,8 @@ ImageView ImageRemap::Apply(const ImageView& image) {
   const cv::Mat fixed(height_, width_, CV_16SC2, fixed_.data());
   const cv::Mat weights(height_, width_, CV_16UC1, weights_.data());
   cv::Mat result(height_, width_, type, pixels_.data());
-  cv::remap(source, result, fixed, weights, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+  cv::remap(source, result, fixed, weights, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+            cv::Scalar::all(255));
   return {pixels_.data(), width_, height_, width_ * bytes, pixels_.size(), image.format};
 }
 

@@ -20,7 +20,7 @@ class ImageRemap {
   ImageRemap(int width, int height, const std::function<Source(int x, int y)>& source_of);
 
   /// @param image kRgb, kBgr or kGray of the table's size. @return a view that is valid until the
-  /// next call; what lies outside the source is black.
+  /// next call; what lies outside the source is white: black would be hair.
   ImageView Apply(const ImageView& image);
 
  private:

@@ -1,6 +1,7 @@
 #include "services/recogniser/ego_motion.h"
 
 #include <stdexcept>
+#include <utility>
 
 namespace visavis {
 
@@ -13,12 +14,14 @@ EgoMotion::Choice EgoMotion::ParseChoice(const std::string& word) {
 }
 
 void EgoMotion::SetRig(const RigDescription& rig) {
+  std::unique_ptr<ArmCameraMotion> arm;
+  if (rig.arm) {
+    arm = std::make_unique<ArmCameraMotion>(
+        HandEye(Arm(rig.arm->urdf, rig.arm->base_link, rig.arm->tip_link), rig.arm->X_WB,
+                rig.X_HC.value_or(RigidTransform::Identity())));
+  }
+  arm_ = std::move(arm);
   rig_has_arm_ = rig.arm.has_value();
-  arm_.reset();
-  if (!rig.arm) return;
-  arm_ = std::make_unique<ArmCameraMotion>(
-      HandEye(Arm(rig.arm->urdf, rig.arm->base_link, rig.arm->tip_link), rig.arm->X_WB,
-              rig.X_HC.value_or(RigidTransform::Identity())));
 }
 
 std::string EgoMotion::AddArmState(std::int64_t utime_us, const std::vector<std::string>& names,
@@ -36,9 +39,9 @@ std::string EgoMotion::AddCameraPose(std::int64_t utime_us, const RigidTransform
   return verdict == SampleVerdict::kAccepted ? "" : poses_.poses().DescribeLastRejection();
 }
 
-void EgoMotion::Clear() {
-  if (arm_) arm_->Clear();
-  poses_.Clear();
+void EgoMotion::ForgetSamplesAfter(std::int64_t utime_us) {
+  if (arm_ && arm_->newest_us() > utime_us) arm_->Clear();
+  if (poses_.newest_us() > utime_us) poses_.Clear();
 }
 
 EgoMotionSource EgoMotion::source() const {

@@ -24,7 +24,8 @@ class EgoMotion {
   /// "auto", "arm", "camera_pose", "none". @throws std::invalid_argument for another word.
   static Choice ParseChoice(const std::string& word);
 
-  /// Takes over the arm of a rig. @throws std::invalid_argument naming what is wrong with the arm.
+  /// Takes over the arm of a rig, or none. @throws std::invalid_argument naming what is wrong with
+  /// the arm; then nothing is changed.
   void SetRig(const RigDescription& rig);
 
   /// @return why the state was not taken; empty: taken, or there is no arm to take it.
@@ -32,8 +33,9 @@ class EgoMotion {
                           const std::vector<double>& q, const std::vector<double>& qdot);
   std::string AddCameraPose(std::int64_t utime_us, const RigidTransform& X_WC);
 
-  /// Forgets all samples: a new session.
-  void Clear();
+  /// Forgets the samples of each source that reaches beyond @p utime_us: they are of an earlier
+  /// session. A source whose new session has begun keeps its samples.
+  void ForgetSamplesAfter(std::int64_t utime_us);
 
   /// The source in use: what was chosen, or for kAuto what has come.
   EgoMotionSource source() const;

@@ -75,34 +75,46 @@ void RecogniserService::SetRig(const RigDescription& description) {
   estimator_ = std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head,
                                                     description.rig);
   estimator_->SetFeedforward(feedforward_);
+  if (commanded_space_) estimator_->SetSearchSpace(*commanded_space_);
   rig_ = description.rig;
   last_utime_us_.reset();
+  head_was_tracked_ = false;
 }
 
 void RecogniserService::OnRig(const stereo_rig_t& message) {
   if (rig_message_ && SameRig(message, *rig_message_)) return;
-  SetRig(FromMessage(message));
+  const RigDescription description = FromMessage(message);
+  ProcessWaiting();  // a pair that waits was taken by the old rig
+  SetRig(description);
   rig_message_ = message;
   context_.status->SetCondition("rig", "");
 }
 
-// Ages are judged in message time. A jump back beyond a second is a new session, for instance a log
-// that is played again.
-void RecogniserService::NoteTime(std::int64_t utime_us) {
-  if (utime_us < newest_utime_us_ - kNewSessionUs) {
+// Ages are judged in message time. Where the pairs jump back by more than a second a new session
+// begins, for instance a log that is played again. Each stream is judged by its own times alone: a
+// clock that is seconds off must not end the track with each of its messages.
+void RecogniserService::BeginSessionIfPairsJumpBack(std::int64_t utime_us) {
+  if (utime_us < 0) return;  // no time; refused with its pair
+  if (utime_us < newest_pair_us_ - kNewSessionUs) {
     ProcessWaiting();
-    ego_motion_.Clear();
+    ego_motion_.ForgetSamplesAfter(utime_us + kNewSessionUs);
     if (estimator_) estimator_->Reset();
     last_utime_us_.reset();
     last_image_seq_.reset();
     pairs_ = 0;
-    newest_utime_us_ = utime_us;
+    head_was_tracked_ = false;
+    newest_pair_us_ = utime_us;
   }
-  newest_utime_us_ = std::max(newest_utime_us_, utime_us);
+  newest_pair_us_ = std::max(newest_pair_us_, utime_us);
+}
+
+// Motion of a new session makes a history forget the old one: a pair that waits goes first.
+void RecogniserService::ProcessWaitingOfOldSession(std::int64_t motion_utime_us) {
+  if (is_waiting_ && motion_utime_us < waiting_.utime - kNewSessionUs) ProcessWaiting();
 }
 
 void RecogniserService::OnArmState(const arm_state_t& message) {
-  NoteTime(message.utime);
+  ProcessWaitingOfOldSession(message.utime);
   const std::string refused = ego_motion_.AddArmState(
       message.utime, message.joint_names, message.joint_position, message.joint_velocity);
   if (!refused.empty())
@@ -112,7 +124,7 @@ void RecogniserService::OnArmState(const arm_state_t& message) {
 
 void RecogniserService::OnCameraPose(const rigid_transform_t& message) {
   const RigidTransform X_WC = FromMessage(message);
-  NoteTime(message.utime);
+  ProcessWaitingOfOldSession(message.utime);
   const std::string refused = ego_motion_.AddCameraPose(message.utime, X_WC);
   if (!refused.empty())
     context_.status->Rejected("rigid_transform_t: " + refused, context_.clock->NowUs());
@@ -120,21 +132,33 @@ void RecogniserService::OnCameraPose(const rigid_transform_t& message) {
 }
 
 void RecogniserService::OnCommand(const recogniser_command_t& message) {
-  if (!message.feedforward.empty()) feedforward_ = ParseFeedforward(message.feedforward);
+  // All is checked before anything changes: a bad command is refused whole.
+  RequireField(message.utime >= 0, "recogniser_command_t.utime", message.utime, "must be >= 0");
+  RequireField(message.pause >= recogniser_command_t::SWITCH_KEEP &&
+                   message.pause <= recogniser_command_t::SWITCH_OFF,
+               "recogniser_command_t.pause", int{message.pause}, "must be 0, 1 or 2");
   RequireField(message.estimator.empty() || message.estimator == config_.estimator,
                "recogniser_command_t.estimator", message.estimator,
                "must be empty or the one configured");
+  const FeedforwardMode feedforward =
+      message.feedforward.empty() ? feedforward_ : ParseFeedforward(message.feedforward);
+  if (message.set_search_space) commanded_space_ = SearchSpaceFromMessage(message);
+
+  feedforward_ = feedforward;
   if (message.pause == recogniser_command_t::SWITCH_ON) paused_ = true;
   if (message.pause == recogniser_command_t::SWITCH_OFF) paused_ = false;
   context_.status->SetCondition("paused", paused_ ? "paused by command" : "");
   if (!estimator_) return;
   estimator_->SetFeedforward(feedforward_);
-  if (message.set_search_space) estimator_->SetSearchSpace(SearchSpaceFromMessage(message));
-  if (message.reset) estimator_->Reset();
+  if (message.set_search_space) estimator_->SetSearchSpace(*commanded_space_);
+  if (message.reset) {
+    estimator_->Reset();
+    head_was_tracked_ = false;
+  }
 }
 
 void RecogniserService::OnImages(const images_t& message) {
-  NoteTime(message.utime);
+  BeginSessionIfPairsJumpBack(message.utime);
   ProcessWaiting();  // a pair that still waits goes first, with what is known of its motion
   const std::int64_t now_us = context_.clock->NowUs();
   if (ego_motion_.IsCertainAt(message.utime) || config_.arm_wait_ms == 0) {
@@ -170,7 +194,7 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
       const CameraStep step =
           last_utime_us_ ? ego_motion_.Between(*last_utime_us_, message.utime) : CameraStep{};
       estimate = &estimator_->Process(frame, step, &timer_);
-    } catch (const std::invalid_argument& e) {
+    } catch (const std::exception& e) {  // whatever it is, the pair gets its HEAD_POSE
       refused = e.what();
     }
   }
@@ -186,9 +210,11 @@ void RecogniserService::PublishEstimate(const images_t& message, const Estimate*
   pose_ = EmptyHeadPose();
   pose_.utime = message.utime;
   pose_.seq = pairs_++;
-  pose_.status = paused_ || (pairs_ > 1 && !estimate) ? head_pose_t::STATUS_LOST
-                                                      : head_pose_t::STATUS_SEARCHING;
+  // Without an estimate: a head that was tracked is lost; one that never was is still searched for.
+  pose_.status =
+      paused_ || head_was_tracked_ ? head_pose_t::STATUS_LOST : head_pose_t::STATUS_SEARCHING;
   if (estimate) {
+    head_was_tracked_ = estimate->status != TrackStatus::kSearching;
     FillHeadPose(*estimate, &pose_);
     FillMotion(message.utime, *estimate);
   }
@@ -202,15 +228,11 @@ void RecogniserService::PublishEstimate(const images_t& message, const Estimate*
 
 // Where the camera was: the pose in the world, and what the feedforward had to go by.
 void RecogniserService::FillMotion(std::int64_t utime_us, const Estimate& estimate) {
-  pose_.feedforward_source = SourceCode(ego_motion_.source(), ego_motion_.missing());
   const auto camera = ego_motion_.At(utime_us);
-  if (!camera) {
-    if (ego_motion_.source() != EgoMotionSource::kNone) {
-      pose_.feedforward_source = head_pose_t::SOURCE_MISSING;
-      ++pairs_without_motion_;
-    }
-    return;
-  }
+  motion_missing_ = !camera && ego_motion_.source() != EgoMotionSource::kNone;
+  pose_.feedforward_source = SourceCode(ego_motion_.source(), motion_missing_);
+  if (motion_missing_) ++pairs_without_motion_;
+  if (!camera) return;
   pose_.feedforward_extrapolated = camera->extrapolated;
   if (camera->extrapolated) ++extrapolated_;
   if (estimate.X_CM) SetWorldPose(camera->X_WC * *estimate.X_CM, &pose_);
@@ -239,19 +261,20 @@ void RecogniserService::PublishPopulation(std::int64_t utime_us) {
 // Counts pairs that never reached us, by the pairs' own numbers.
 void RecogniserService::TellMissing(const images_t& message) {
   if (message.images.empty()) return;
-  const auto seq = FindMetadata(message.images[0], "seq");
-  if (seq && last_image_seq_ && *seq > *last_image_seq_ + 1) {
+  auto seq = FindMetadata(message.images[0], "seq");
+  if (seq && *seq < 0) seq.reset();  // no number
+  if (seq && last_image_seq_ && *seq - *last_image_seq_ > 1) {
     context_.status->Dropped(*seq - *last_image_seq_ - 1);
   }
   last_image_seq_ = seq;
 }
 
 void RecogniserService::UpdateStatus() {
-  context_.status->SetCondition("motion", ego_motion_.missing()
-                                              ? "no " + config_.channels.arm_state + " or " +
-                                                    config_.channels.camera_pose +
-                                                    ": going on without feedforward"
-                                              : "");
+  const bool missing = motion_missing_ || ego_motion_.missing();
+  context_.status->SetCondition("motion", missing ? "no " + config_.channels.arm_state + " or " +
+                                                        config_.channels.camera_pose +
+                                                        ": going on without feedforward"
+                                                  : "");
   context_.status->SetCounter("pairs_without_motion", pairs_without_motion_);
   context_.status->SetCounter("pairs_with_extrapolated_motion", extrapolated_);
 }

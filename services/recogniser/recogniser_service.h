@@ -48,7 +48,8 @@ class RecogniserService final : public Service {
   void OnCommand(const recogniser_command_t& message);
 
   void SetRig(const RigDescription& rig);
-  void NoteTime(std::int64_t utime_us);
+  void BeginSessionIfPairsJumpBack(std::int64_t utime_us);
+  void ProcessWaitingOfOldSession(std::int64_t motion_utime_us);
   void CheckReady();
   void ProcessWaiting();
   void ProcessPair(const images_t& message, std::int64_t received_us);
@@ -76,9 +77,12 @@ class RecogniserService final : public Service {
   head_pose_t pose_{};
   recogniser_timing_t timing_{};
   ga_population_t population_{};
-  std::int64_t pairs_{0}, newest_utime_us_{0}, pairs_without_motion_{0}, extrapolated_{0};
+  std::int64_t pairs_{0}, newest_pair_us_{0}, pairs_without_motion_{0}, extrapolated_{0};
   std::optional<std::int64_t> last_utime_us_, last_image_seq_;
+  std::optional<SearchSpace> commanded_space_;  // outlives a change of the rig
   bool paused_{false};
+  bool head_was_tracked_{false};  // the last estimate was TRACKING or LOST
+  bool motion_missing_{false};    // at the last pair
 };
 
 }  // namespace visavis
