@@ -9,11 +9,11 @@ namespace visavis {
 namespace {
 
 std::uint8_t EncodeSigned(double x) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(128 + 64 * x, 1.0, 255.0)));
+  return static_cast<std::uint8_t>(std::clamp(128 + 64 * x, 1.0, 255.0) + 0.5);
 }
 
 std::uint8_t EncodeUnit(double x) {
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(x, 0.0, 1.0)));
+  return static_cast<std::uint8_t>(255 * std::clamp(x, 0.0, 1.0) + 0.5);
 }
 
 /// 255 sqrt(linear reflectance) of an sRGB value, by table.

@@ -23,7 +23,8 @@ struct Part {
 struct Figure {
   std::vector<Part> head;
   std::vector<Part> body;
-  /// Centres of the visible eyeballs' areas [m] in M: image right (the person's left), image left.
+  /// Centres of the visible eyeballs as seen from the front [m] in M: image right (the person's
+  /// left), image left.
   Eigen::Vector3d p_M_eye_right_m{Eigen::Vector3d::Constant(std::nan(""))};
   Eigen::Vector3d p_M_eye_left_m{Eigen::Vector3d::Constant(std::nan(""))};
   /// Where the neck bends [m], in M.

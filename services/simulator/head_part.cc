@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <cmath>
 
 #include "services/simulator/bake.h"
 #include "services/simulator/figure.h"
@@ -12,7 +12,8 @@ using Eigen::Vector3d;
 
 constexpr double kMetrePerMm = 1e-3;
 
-/// Area-weighted mean place [m] of the texels labelled eye on one side of the face.
+/// Mean place [m] of the texels labelled eye on one side of the face, weighted by the area that
+/// they show to the front.
 Vector3d EyeCentre(const Texture& texture, const HeadGrid& grid, const HeadSurface& surface,
                    double side) {
   Vector3d sum = Vector3d::Zero();
@@ -26,7 +27,7 @@ Vector3d EyeCentre(const Texture& texture, const HeadGrid& grid, const HeadSurfa
       if (p.x() * side < 0) continue;
       const Vector3d tu = surface.ToM(grid.Outer(u + du, v)) - p;
       const Vector3d tv = surface.ToM(grid.Outer(u, v + dv)) - p;
-      const double area = tu.cross(tv).norm();
+      const double area = std::abs(tu.cross(tv).z());
       sum += area * p;
       total += area;
     }

@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 
 // The average head: semi-axes of the cranium, and where its landmarks lie.
 constexpr double kCraniumX = 76, kCraniumY = 93, kCraniumZ = 97.5;
-constexpr double kMenton = 135, kSellion = 19, kSubnasale = 70;
+constexpr double kAverageBreadth = 156, kAverageLength = 199;  // with what joins the cranium
+constexpr double kMenton = 135, kUnderChin = 138.5, kSellion = 19, kSubnasale = 70;
 
 double Square(double x) { return x * x; }
 
@@ -64,15 +65,14 @@ void HeadShape::ValidateOrThrow() const {
 HeadSurface::HeadSurface(const HeadShape& shape)
     : shape_(shape),
       // Along y: depth before the axis, half width, z of the widest place, depth behind it.
-      face_front_{{-85, 15}, {-60, 60}, {-30, 84},  {-8, 94}, {4, 96.5}, {19, 91},
-                  {45, 91},  {70, 95},  {84, 97.5}, {92, 96}, {108, 92}, {120, 93.5},
-                  {128, 91}, {133, 84}, {137, 66},  {139, 40}},
-      face_half_width_{{-85, 8},   {-60, 35}, {-30, 55},  {-5, 61},  {20, 66},
-                       {42, 68.5}, {60, 66},  {78, 60.5}, {95, 54},  {108, 46.5},
-                       {118, 39},  {126, 31}, {132, 23},  {136, 14}, {139, 4}},
+      face_front_{{-60, 45},   {-30, 80}, {-8, 90},   {4, 93},   {19, 88},
+                  {45, 90},    {70, 95},  {84, 97.5}, {92, 96},  {108, 92},
+                  {120, 93.5}, {128, 91}, {133, 84},  {137, 66}, {139, 40}},
+      face_half_width_{{-60, 30}, {-30, 52},  {-5, 60},  {20, 66},    {42, 68.5},
+                       {60, 66},  {78, 60.5}, {95, 54},  {108, 46.5}, {118, 39},
+                       {126, 31}, {132, 23},  {136, 14}, {139, 4}},
       face_centre_{{-30, -15}, {30, -15}, {75, -12}, {95, -20}, {115, -40}, {130, -60}, {139, -66}},
-      face_back_{{-85, 8}, {-60, 30}, {-30, 50}, {60, 50},
-                 {90, 32}, {110, 30}, {128, 24}, {139, 10}},
+      face_back_{{-60, 22}, {-30, 50}, {60, 50}, {90, 32}, {110, 30}, {128, 24}, {139, 10}},
       y_to_M_{{-120, 0}, {200, 1}} {
   shape.ValidateOrThrow();
   // Vertex, eyes and chin share out the height as on the average head; the nose has its own length.
@@ -89,34 +89,36 @@ HeadSurface::HeadSurface(const HeadShape& shape)
 }
 
 Vector3d HeadSurface::cranium_semi_axes_mm() const {
-  return {shape_.breadth_mm / 2, kCraniumY * shape_.height_mm / (kCraniumY + kMenton),
-          shape_.length_mm / 2};
+  return {kCraniumX * shape_.breadth_mm / kAverageBreadth,
+          kCraniumY * shape_.height_mm / (kCraniumY + kMenton),
+          kCraniumZ * shape_.length_mm / kAverageLength};
 }
 
 Vector3d HeadSurface::ToM(const Vector3d& p) const {
   // Breadth of the cranium above, of the face and neck (already in average mm) below.
-  const double cranial = shape_.breadth_mm / (2 * kCraniumX);
+  const double cranial = shape_.breadth_mm / kAverageBreadth;
   const double facial = shape_.bizygomatic_mm / 137;
   const double face = SmoothStep(-40, 25, p.y()) * SmoothStep(35, -25, p.z());
   return {p.x() * (cranial + (facial - cranial) * face), y_to_M_(p.y()),
-          p.z() * shape_.length_mm / (2 * kCraniumZ)};
+          p.z() * shape_.length_mm / kAverageLength};
 }
 
 double HeadSurface::Cranium(const Vector3d& p) const {
   // Widest above the ears, narrower at the forehead.
   const double half_width =
       kCraniumX * (1 - 0.17 * Square(std::clamp((18 - p.z()) / 112, 0.0, 1.0)));
+  // Behind the face the skull recedes, so that eyes and root of the nose lie deep.
+  const double depth = kCraniumZ - (p.z() < 0 ? 10 * SmoothStep(-12, 26, p.y()) : 0);
   const double n = 2.2;
-  const double g = std::pow(std::pow(std::abs(p.x()) / half_width, n) +
-                                std::pow(std::abs(p.y()) / kCraniumY, n) +
-                                std::pow(std::abs(p.z()) / kCraniumZ, n),
-                            1 / n);
+  const double g =
+      std::pow(std::pow(std::abs(p.x()) / half_width, n) +
+                   std::pow(std::abs(p.y()) / kCraniumY, n) + std::pow(std::abs(p.z()) / depth, n),
+               1 / n);
   return (g - 1) * kCraniumX;
 }
 
 double HeadSurface::Face(const Vector3d& p) const {
-  if (p.y() > 139.5) return 10 + (p.y() - 139.5);
-  if (p.y() < -84) return 40;  // well inside the cranium
+  if (p.y() < -60) return 40;  // well inside the cranium
   const double jaw =
       SmoothStep(55, 95, p.y()) * (shape_.bigonial_mm / 107 * 137 / shape_.bizygomatic_mm - 1);
   const double half_width = face_half_width_(p.y()) * (1 + jaw);
@@ -124,7 +126,8 @@ double HeadSurface::Face(const Vector3d& p) const {
   const double front = face_front_(p.y()) + shape_.chin_mm * SmoothStep(98, 120, p.y()) + centre;
   const double depth = p.z() < centre ? front : face_back_(p.y());
   const double n = p.z() < centre ? 2.0 + 0.25 * SmoothStep(95, 125, p.y()) : 2.3;
-  return Superellipse(p.x(), p.z() - centre, half_width, std::max(depth, 2.0), n);
+  const double round = Superellipse(p.x(), p.z() - centre, half_width, std::max(depth, 2.0), n);
+  return std::max(round, p.y() - kUnderChin);
 }
 
 double HeadSurface::Neck(const Vector3d& p) const {

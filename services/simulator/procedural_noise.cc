@@ -24,7 +24,7 @@ double Noise(const Eigen::Vector3d& p, std::uint32_t seed) {
     return Mix(Mix(LatticeValue(x, y, k, seed), LatticeValue(x + 1, y, k, seed), u),
                Mix(LatticeValue(x, y + 1, k, seed), LatticeValue(x + 1, y + 1, k, seed), u), v);
   };
-  return Mix(plane(z), plane(z + 1), w);
+  return w == 0 ? plane(z) : Mix(plane(z), plane(z + 1), w);
 }
 
 double FractalNoise(const Eigen::Vector3d& p, int octaves, std::uint32_t seed) {

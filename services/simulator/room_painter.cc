@@ -11,7 +11,7 @@ namespace {
 
 std::uint32_t Pack(const Srgb& colour) {
   const auto byte = [](double x) {
-    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(x, 0.0, 1.0)));
+    return static_cast<std::uint32_t>(255 * std::clamp(x, 0.0, 1.0) + 0.5);
   };
   return byte(colour.x()) | byte(colour.y()) << 8 | byte(colour.z()) << 16;
 }

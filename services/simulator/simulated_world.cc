@@ -61,11 +61,13 @@ void SceneConfig::ValidateOrThrow() const {
 SimulatedWorld::SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig& scene,
                                const SensorConfig& sensor, const StereoRig& rig,
                                const RigidTransform& X_WC0, std::uint64_t seed)
-    : SimulatedWorld(scenario, scene, sensor, rig, X_WC0, seed, MakeFigure(scene)) {}
+    : SimulatedWorld(scenario, scene, sensor, rig, X_WC0, seed, MakeFigure(scene),
+                     std::make_shared<Background>(WallOf(scene), seed)) {}
 
 SimulatedWorld::SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig& scene,
                                const SensorConfig& sensor, const StereoRig& rig,
-                               const RigidTransform& X_WC0, std::uint64_t seed, Figure figure)
+                               const RigidTransform& X_WC0, std::uint64_t seed, Figure figure,
+                               std::shared_ptr<const Background> background)
     : scenario_(scenario, X_WC0, seed),
       scene_(scene),
       sensor_config_(sensor),
@@ -73,7 +75,7 @@ SimulatedWorld::SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig
       X_SW_(X_WC0.inverse()),
       figure_(std::move(figure)),
       bystander_figure_(MakeBystander(scene)),
-      background_(WallOf(scene), seed),
+      background_(std::move(background)),
       light_(scene.light == "side" ? Lighting::Side() : Lighting()),
       sensor_(sensor, seed),
       right_(rig.right, scene.edge_samples),
@@ -135,7 +137,7 @@ void SimulatedWorld::PlaceHand() {
     const Eigen::Vector3d p_M(-0.20 + 0.20 * way, 0.19 - 0.14 * way, -0.165);
     X_MHand_ = MakeTransform(R, p_M);
     hand_->set_X_SO(X_SM_front * X_MHand_);
-    const SceneView view{{head_.get(), hand_.get()}, true, &background_, &light_};
+    const SceneView view{{head_.get(), hand_.get()}, true, background_.get(), &light_};
     HeadPixels seen;
     renderer.Render(view, RigidTransform::Identity(), {pixels.data(), 160, 120, 480}, nullptr,
                     &seen);
@@ -187,7 +189,7 @@ void SimulatedWorld::Pose(double t_s) {
 
 HeadPixels SimulatedWorld::RenderInstant(double t_s, const RigidTransform& X_WC,
                                          const RgbView& right, const RgbView& left) {
-  SceneView view{{}, false, &background_, &light_};
+  SceneView view{{}, false, background_.get(), &light_};
   if (scenario_.HeadPresent(t_s)) {
     Pose(t_s);
     view.has_head = true;

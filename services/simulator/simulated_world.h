@@ -79,10 +79,10 @@ class SimulatedWorld {
   SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig& scene,
                  const SensorConfig& sensor, const StereoRig& rig, const RigidTransform& X_WC0,
                  std::uint64_t seed);
-  /// With a figure of the caller's own.
+  /// With figure and wall of the caller's own; a world may share its wall with others.
   SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig& scene,
                  const SensorConfig& sensor, const StereoRig& rig, const RigidTransform& X_WC0,
-                 std::uint64_t seed, Figure figure);
+                 std::uint64_t seed, Figure figure, std::shared_ptr<const Background> background);
   ~SimulatedWorld();
 
   const Scenario& scenario() const { return scenario_; }
@@ -118,7 +118,7 @@ class SimulatedWorld {
   Figure figure_;
   Figure bystander_figure_;
   std::vector<Part> hand_parts_;
-  Background background_;
+  std::shared_ptr<const Background> background_;
   Lighting light_;
   Sensor sensor_;
   ExposureSum right_sum_, left_sum_;
