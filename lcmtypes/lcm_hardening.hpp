@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-// What harden.awk writes into the headers of lcm-gen 1.3.1. Stock decoders abort on a negative array
-// length, crash on a negative string length, allocate whatever a length claims, and leave old
+// What harden.awk writes into the headers of lcm-gen 1.3.1. Stock decoders abort on a negative
+// array length, crash on a negative string length, allocate whatever a length claims, and leave old
 // elements in a reused message.
 namespace visavis_lcm_hardening {
 

@@ -12,7 +12,7 @@ struct Date {
 /// Gregorian date of a day counted from 1970-01-01, for days >= 0 (H. Hinnant, chrono-Compatible
 /// Low-Level Date Algorithms: years begin in March, so that the leap day is the last).
 Date DateOfDay(long long day) {
-  day += 719'468;  // from 0000-03-01
+  day += 719'468;                                               // from 0000-03-01
   const long long era = day / 146'097, of_era = day % 146'097;  // 400 years
   const long long year_of_era =
       (of_era - of_era / 1'460 + of_era / 36'524 - of_era / 146'096) / 365;

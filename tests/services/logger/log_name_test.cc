@@ -1,8 +1,8 @@
 #include "services/logger/log_name.h"
 
-#include <ctime>
-
 #include <gtest/gtest.h>
+
+#include <ctime>
 
 #include "common/core/random.h"
 
