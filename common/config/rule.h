@@ -26,7 +26,7 @@ Rule<T> InRange(T min, T max, const std::string& unit = "") {
 }
 
 /// One of the given words.
-inline Rule<std::string> OneOf(std::vector<std::string> words) {
+inline Rule<std::string> OneOf(const std::vector<std::string>& words) {
   std::string text = "must be one of";
   for (const auto& word : words) text += " " + (word.empty() ? "''" : word);
   return {[words](const std::string& v) {
