@@ -51,6 +51,7 @@ Part BuildEarPart(const Subject& subject, const HeadSurface& surface, bool image
     const double radius = front ? v / 0.6 : 1 - 0.75 * (v - 0.6) / 0.4;
     Vector3d ear = Auricle(2 * kPi * u, radius);
     if (!front) ear.z() = ear.z() * 0.4 - 0.13 * std::sqrt(std::max(0.0, 1 - radius)) - 0.02;
+    ear.z() -= 0.30 * SmoothStep(0.40, 1.05, ear.y());  // the lobe hangs close to the head
     const Vector3d p =
         root + half * ((ear.x() + 0.36) * back + ear.y() * down + (ear.z() + 0.02) * out);
     const Vector3d p_M = surface.ToM(p);

@@ -65,7 +65,7 @@ double InsideHairline(const Subject& subject, const Vector3d& p, bool ragged) {
 }
 
 double InsideBeard(const Subject& subject, const Vector3d& p) {
-  if (subject.hair.beard <= 0 || p.z() > 12) return -100;
+  if (subject.hair.beard <= 0 || p.z() > 20) return -100;
   const double x = std::abs(p.x());
   // Below a line from the ear over the cheek to the corner of the mouth; and the moustache.
   const double cheek = p.y() - (62 + 26 * SmoothStep(62, 28, x));
@@ -74,6 +74,7 @@ double InsideBeard(const Subject& subject, const Vector3d& p) {
   double inside = std::min(std::max(cheek, moustache), neck);
   const double lips = std::hypot((p.x()) / 25.5, (p.y() - 92.5) / 9.5);
   inside = std::min(inside, 9 * (lips - 1));
+  inside = std::min(inside, 0.7 * (6 - p.z()));
   return inside + 2.0 * FractalNoise(0.12 * p, 2, subject.seed + 9);
 }
 

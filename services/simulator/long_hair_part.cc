@@ -15,13 +15,17 @@ using Eigen::Vector3d;
 Part BuildLongHairPart(const Subject& subject, const HeadSurface& surface, int texture_size) {
   // A curtain round the back of the head, open over the face, from above the ears to the
   // shoulders; its front edges are turned in towards the skin. Average coordinates [mm].
-  static const Profile half_width{{-62, 66}, {-40, 77}, {-10, 86}, {30, 91},
-                                  {80, 92},  {120, 88}, {150, 76}};
-  static const Profile front{{-62, 82}, {0, 92}, {150, 92}};
-  static const Profile behind{{-62, 82}, {-30, 101}, {10, 110}, {60, 106}, {110, 96}, {150, 84}};
+  static const Profile half_width{{-62, 56}, {-45, 71}, {-28, 81}, {-5, 87},
+                                  {30, 91},  {80, 92},  {120, 88}, {150, 76}};
+  static const Profile front{{-62, 70}, {-40, 84}, {0, 92}, {150, 92}};
+  static const Profile behind{{-62, 70}, {-45, 90}, {-25, 104}, {10, 110},
+                              {60, 106}, {110, 96}, {150, 84}};
   static const Profile opening_deg{{-62, 44}, {-30, 55}, {0, 66}, {40, 76}, {90, 78}, {150, 92}};
   const auto position = [&](double u, double v) {
-    const double y = -62 + 212 * v;
+    // The lower edge is not cut quite straight.
+    const double ragged = 1 + 0.035 * Noise({9 * u, 1, 0}, subject.seed + 63) +
+                          0.02 * Noise({45 * u, 2, 0}, subject.seed + 64);
+    const double y = -62 + 206 * v * ragged;
     // The outer 4 % of the columns on each side are the turned-in edge.
     constexpr double kEdge = 0.04;
     const double inner = std::clamp((u - kEdge) / (1 - 2 * kEdge), 0.0, 1.0);

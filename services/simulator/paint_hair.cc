@@ -81,8 +81,11 @@ void PaintHair(const Subject& subject, const Vector3d& p, double u, double v, Pa
   }
   const double beard = InsideBeard(subject, p);
   if (beard > -3 && paint->label != Label::kHair) {
-    Paint strands = PaintStrands(subject, 1.3 * p.x() + 200, 0.6 * p.y());
-    if (hair.beard <= 0.5) strands.height_mm = 0.8 * Noise(1.1 * p, subject.seed + 47);
+    Paint strands = PaintStrands(subject, 95 * azimuth + 200, 0.6 * p.y());
+    if (hair.beard <= 0.5) {  // stubble: dots, no strands
+      strands.height_mm = 0.8 * Noise(1.1 * p, subject.seed + 47);
+      strands.colour = hair.colour;
+    }
     const double dense = SmoothStep(-3, 7, beard) * hair.beard;
     const double alpha = std::clamp(dense * (0.9 + 0.5 * strands.height_mm), 0.0, 1.0);
     paint->Blend(strands.colour, hair.beard > 0.5 ? alpha : 0.5 * alpha);

@@ -76,9 +76,10 @@ Paint PaintSkin(const Subject& subject, const Vector3d& p) {
   paint.gloss += 0.05 * Spot(p, 0, 54, 9, 16) + 0.035 * Spot(p, 0, -28, 40, 18) +
                  0.025 * Spot(p, 42, 38, 14, 10);
   if (c.freckles > 0) {
-    const CellDistances cell = CellNoise(0.28 * p.x(), 0.28 * p.y(), subject.seed + 14);
+    const CellDistances cell =
+        CellNoise(25 * std::atan2(p.x(), -p.z()), 0.28 * p.y(), subject.seed + 14);
     const double size = 0.10 + 0.14 * (cell.nearest_hash % 97) / 97.0;
-    const double where = Spot(p, 24, 46, 30, 24) + 0.3;
+    const double where = Spot(p, 24, 46, 30, 24) + 0.22;
     const double dot = SmoothStep(size + 0.10, size, cell.nearest) * where * c.freckles * 0.42;
     paint.colour = paint.colour.cwiseProduct(Srgb(1 - 0.6 * dot, 1 - 0.9 * dot, 1 - dot));
   }
