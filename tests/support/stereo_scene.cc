@@ -32,6 +32,28 @@ Vector6d RandomPhi(Random* random) {
   return phi;
 }
 
+HeadModelConfig TestHead() {
+  HeadModelConfig head;
+  head.shape = "ellipsoid";
+  head.semi_axis_x_mm = 80;
+  head.semi_axis_y_mm = 108;
+  head.semi_axis_z_mm = 98;
+  head.hair_tilt_deg = 34;
+  head.hair_offset_mm = -37;
+  head.chin_gap_deg = 90;
+  head.outline_width = 0.15;
+  head.eye_x_mm = 31;
+  head.eye_y_mm = 20;
+  head.eye_half_width_mm = 14;
+  head.eye_half_height_mm = 5;
+  head.brow_y_mm = 10;
+  head.brow_inner_x_mm = 13;
+  head.brow_outer_x_mm = 52;
+  head.brow_half_height_mm = 2.5;
+  head.brow_arch_mm = 4;
+  return head;
+}
+
 StereoRig SmallRig() {
   const Pinhole camera{320, 240, 400, 400, 159.5, 119.5, {}};
   StereoRig rig{camera, camera, RigidTransform::Identity()};

@@ -17,6 +17,10 @@ Vector6d PhiOf(double x_mm, double y_mm, double z_mm, double phi_deg, double the
 /// A random pose in the default search space's middle half.
 Vector6d RandomPhi(Random* random);
 
+/// The head that the tests paint and look for, every number of it given: tuned defaults move no
+/// test.
+HeadModelConfig TestHead();
+
 /// A rig of 320x240 px with f = 400 px: a quarter of TestRig()'s pixels, so a quarter of the time
 /// to paint.
 StereoRig SmallRig();

@@ -13,7 +13,7 @@ namespace visavis {
 
 /// A random head whose face is skin: its features lie below the hair.
 inline HeadModelConfig RandomHead(const std::string& shape, Random* random) {
-  HeadModelConfig head;
+  HeadModelConfig head = TestHead();
   head.shape = shape;
   head.radius_mm = random->Uniform(80, 110);
   head.semi_axis_x_mm = random->Uniform(75, 90);

@@ -10,32 +10,16 @@
 
 #include "common/config/config_reader.h"
 #include "tests/support/config_refusal.h"
+#include "tests/support/stereo_scene.h"
 
 namespace visavis {
 namespace {
 
-// A head whose numbers these tests rely on: defaults may be tuned.
 HeadModelConfig AHead(const std::string& shape) {
-  HeadModelConfig c;
-  c.shape = shape;
-  c.radius_mm = 95;
-  c.semi_axis_x_mm = 80;
-  c.semi_axis_y_mm = 108;
-  c.semi_axis_z_mm = 98;
-  c.hair_tilt_deg = 34;
-  c.hair_offset_mm = -37;
-  c.chin_gap_deg = 90;
-  c.outline_width = 0.15;
-  c.eye_x_mm = 31;
-  c.eye_y_mm = 20;
-  c.eye_half_width_mm = 14;
-  c.eye_half_height_mm = 5;
-  c.brow_y_mm = 10;
-  c.brow_inner_x_mm = 13;
-  c.brow_outer_x_mm = 52;
-  c.brow_half_height_mm = 2.5;
-  c.brow_arch_mm = 4;
-  return c;
+  HeadModelConfig head = TestHead();
+  head.shape = shape;
+  head.radius_mm = 95;
+  return head;
 }
 
 class HeadModelTest : public ::testing::TestWithParam<const char*> {

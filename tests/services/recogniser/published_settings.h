@@ -8,18 +8,6 @@
 
 namespace visavis {
 
-/// The head that the estimator's tests paint and look for.
-inline HeadModelConfig TestHead() {
-  HeadModelConfig head;
-  head.shape = "ellipsoid";
-  head.semi_axis_x_mm = 80;
-  head.semi_axis_y_mm = 108;
-  head.semi_axis_z_mm = 98;
-  head.hair_tilt_deg = 34;
-  head.hair_offset_mm = -37;
-  return head;
-}
-
 /// The published method, every number of it given, so that tuned defaults move no test.
 inline PublishedEstimator::Settings PublishedTestSettings() {
   PublishedEstimator::Settings settings;
@@ -36,6 +24,10 @@ inline PublishedEstimator::Settings PublishedTestSettings() {
   settings.ga.immigrant_share = 0.1;
   settings.ga.carry_remainder = true;
   settings.published.generations_per_frame = 1;
+  settings.published.color.hair_min_p = 220;
+  settings.published.color.skin_min_value = 50;
+  settings.published.color.skin_min_saturation = 30;
+  settings.published.fitness.normalised = true;
   TrackMonitorConfig& track = settings.published.track;
   track.min_fitness = 0.8;
   track.min_site = 0.1;
