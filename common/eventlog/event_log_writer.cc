@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <limits>
@@ -67,19 +68,24 @@ void EventLogWriter::Write(std::int64_t utime, const std::string& channel, const
   VISAVIS_THROW_UNLESS(!channel.empty() && channel.size() <= kMaxChannelSize, channel);
   VISAVIS_THROW_UNLESS(size <= std::numeric_limits<std::int32_t>::max(), size);
   const std::size_t front = kHeaderSize + channel.size();
-  if (buffered_ + front + size > kBufferSize) Flush();
+  const std::int64_t number = next_number_++;
+  ++num_events_;
+  num_bytes_ += static_cast<std::int64_t>(front + size);
+  if (buffered_ + front + size > kBufferSize) {
+    ++num_lost_;  // this event too, if flushing throws
+    Flush();
+    --num_lost_;
+  }
 
   std::uint8_t* out = buffer_.data() + buffered_;
   out = PutBigEndian(0xEDA1DA01u, out);
-  out = PutBigEndian(next_number_++, out);
+  out = PutBigEndian(number, out);
   out = PutBigEndian(utime, out);
   out = PutBigEndian(static_cast<std::int32_t>(channel.size()), out);
   out = PutBigEndian(static_cast<std::int32_t>(size), out);
-  std::memcpy(out, channel.data(), channel.size());
-  ++num_events_;
-  num_bytes_ += static_cast<std::int64_t>(front + size);
+  out = std::copy(channel.begin(), channel.end(), out);
   if (front + size <= kBufferSize) {
-    if (size > 0) std::memcpy(out + channel.size(), data, size);
+    if (size > 0) std::memcpy(out, data, size);
     buffered_ += front + size;
     ++num_buffered_;
     return;

@@ -34,12 +34,12 @@ TruthSample ToSample(const head_pose_t& message) {
 LogContents ReadLog(const std::string& path, const std::string& prefix,
                     const std::function<void(const images_t&)>& on_images) {
   LogContents contents;
-  images_t images;
-  stereo_rig_t rig;
-  rigid_transform_t pose;
-  arm_state_t arm;
-  head_pose_t head;
-  recogniser_timing_t timing;
+  images_t images{};
+  stereo_rig_t rig{};
+  rigid_transform_t pose{};
+  arm_state_t arm{};
+  head_pose_t head{};
+  recogniser_timing_t timing{};
   const auto take = [&](const LogEvent& event) {
     if (event.channel.compare(0, prefix.size(), prefix) != 0) return;
     const std::string channel = event.channel.substr(prefix.size());

@@ -48,13 +48,13 @@ Weights WeighResiduals(const std::vector<double>& residuals, double min_scale) {
 Eigen::Vector3d RobustMean(const std::vector<Eigen::Vector3d>& points, double* rms) {
   Eigen::Vector3d mean;
   for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (const auto& p : points) values.push_back(p[axis]);
+    std::vector<double> values(points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) values[k] = points[k][axis];
     mean[axis] = Median(values);
   }
   for (int i = 0; i < kIterations; ++i) {
-    std::vector<double> residuals;
-    for (const auto& p : points) residuals.push_back((p - mean).norm());
+    std::vector<double> residuals(points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) residuals[k] = (points[k] - mean).norm();
     const Weights weights = WeighResiduals(residuals, kMinScale_m);
     *rms = weights.rms;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -70,9 +70,9 @@ Eigen::Matrix3d MedoidRotation(const std::vector<Eigen::Matrix3d>& rotations) {
   Eigen::Matrix3d best = rotations[0];
   double best_median = 1e9;
   for (std::size_t i = 0; i < rotations.size(); i += step) {
-    std::vector<double> angles;
-    for (const auto& R : rotations) {
-      angles.push_back(LogRotation(rotations[i].transpose() * R).norm());
+    std::vector<double> angles(rotations.size());
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+      angles[k] = LogRotation(rotations[i].transpose() * rotations[k]).norm();
     }
     const double median = Median(angles);
     if (median < best_median) {

@@ -94,7 +94,8 @@ void WriteHeadPose(const head_pose_t& m, CsvWriter* csv) {
   for (const double v : m.p_CM_m) csv->Number(v);
   for (const double v : m.q_CM_wxyz) csv->Number(v);
   for (const double v : m.euler_zyx_CM_rad) csv->Number(v * kDegrees);
-  for (int i = 0; i < 6; ++i) csv->Number(std::sqrt(m.covariance[7 * i]) * (i < 3 ? 1 : kDegrees));
+  for (std::size_t i = 0; i < 6; ++i)
+    csv->Number(std::sqrt(m.covariance[std::size_t{7} * i]) * (i < 3 ? 1 : kDegrees));
   for (const double v : m.p_WM_m) csv->Number(m.has_world_pose ? v : nan);
   for (const double v : m.q_WM_wxyz) csv->Number(m.has_world_pose ? v : nan);
   csv->Number(m.fitness).Number(m.fitness_site).Number(m.fitness_color).Number(m.fitness_feat);
@@ -127,8 +128,8 @@ std::int64_t WriteCameraPoseCsv(const std::vector<ExportedFrame>& frames,
 
 std::int64_t WriteTruthCsv(const std::vector<ExportedFrame>& frames,
                            const std::vector<TruthSample>& truth, const std::string& path) {
-  std::vector<std::int64_t> utimes_us;
-  for (const auto& f : frames) utimes_us.push_back(f.utime_us);
+  std::vector<std::int64_t> utimes_us(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) utimes_us[i] = frames[i].utime_us;
   const TruthTrack track(truth, utimes_us);
   CsvWriter csv(path, kPoseHeader);
   for (const auto& f : frames) {

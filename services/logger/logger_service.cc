@@ -54,7 +54,7 @@ LoggerService::LoggerService(const LoggerConfig& config, const ServiceContext& c
       context_(context),
       filter_(config.include, config.exclude),
       writer_(OpenLog(config, context.clock->NowUs())) {
-  next_flush_us_ = context_.clock->NowUs() + 1000 * config_.flush_ms;
+  next_flush_us_ = context_.clock->NowUs() + std::int64_t{1000} * config_.flush_ms;
   context_.bus->SubscribeAll([this](const std::string& channel, const std::uint8_t* data,
                                     int size) { OnMessage(channel, data, size); },
                              config_.queue_capacity);
@@ -101,7 +101,7 @@ bool LoggerService::IsUnwantedImage(const std::uint8_t* data, int size) {
 }
 
 void LoggerService::Wake() {
-  next_flush_us_ = context_.clock->NowUs() + 1000 * config_.flush_ms;
+  next_flush_us_ = context_.clock->NowUs() + std::int64_t{1000} * config_.flush_ms;
   if (Guard([this] { writer_->Flush(); })) context_.status->SetCondition("write", "");
 }
 

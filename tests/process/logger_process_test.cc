@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/lcm_bus.h"
 #include "tests/support/child_process.h"
+#include "tests/support/environment.h"
 #include "tests/support/network.h"
 #include "tests/support/sequence_folder.h"
 #include "tests/support/temporary_folder.h"
@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-std::string Logger() { return std::string(std::getenv("VISAVIS_BIN_DIR")) + "/visavis-logger"; }
+std::string Logger() { return Environment("VISAVIS_BIN_DIR") + "/visavis-logger"; }
 
 /// The only log in a folder.
 std::string LogIn(const std::string& folder) {

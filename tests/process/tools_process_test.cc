@@ -3,12 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <fstream>
 #include <lcm/lcm-cpp.hpp>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/child_process.h"
+#include "tests/support/environment.h"
 #include "tests/support/sequence_folder.h"
 #include "tests/support/temporary_folder.h"
 #include "visavis/head_pose_t.hpp"
@@ -21,10 +22,10 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 std::string Program(const std::string& name) {
-  return std::string(std::getenv("VISAVIS_BIN_DIR")) + "/visavis-" + name;
+  return Environment("VISAVIS_BIN_DIR") + "/visavis-" + name;
 }
 std::string Data(const std::string& name) {
-  return std::string(std::getenv("VISAVIS_SOURCE_DIR")) + "/tests/data/" + name;
+  return Environment("VISAVIS_SOURCE_DIR") + "/tests/data/" + name;
 }
 
 class ToolsProcessTest : public ::testing::Test {

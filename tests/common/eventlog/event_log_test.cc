@@ -28,7 +28,7 @@ Bytes Payload(std::size_t size, int seed) {
 
 void Put(EventLogWriter* writer, int i, std::size_t size) {
   const Bytes data = Payload(size, i);
-  writer->Write(1000 * i, "CHANNEL_" + std::to_string(i), data.data(), data.size());
+  writer->Write(std::int64_t{1000} * i, "CHANNEL_" + std::to_string(i), data.data(), data.size());
 }
 
 /// A log of @p n events of @p size bytes each.
@@ -90,7 +90,7 @@ TEST(EventLogTest, WritesTheBytesOfLiblcm) {
     for (int i = 0; i < 5; ++i) {
       Bytes data = Payload(100, i);
       lcm::LogEvent event{};
-      event.timestamp = 1000 * i;
+      event.timestamp = std::int64_t{1000} * i;
       event.channel = "CHANNEL_" + std::to_string(i);
       event.datalen = 100;
       event.data = data.data();
@@ -262,11 +262,16 @@ TEST(EventLogTest, AfterAFullDiskTheLogEndsWithAWholeEventAndGoesOn) {
     EXPECT_EQ(writer.num_lost(), 2);
     EXPECT_THROW(Put(&writer, 3, 2'000'000), std::runtime_error);  // beyond the buffer
     EXPECT_EQ(writer.num_lost(), 3);
+    Put(&writer, 4, 1000);
+    Put(&writer, 5, 1000);
+    EXPECT_THROW(Put(&writer, 6, 1'048'000), std::runtime_error);  // flushing those before
+    EXPECT_EQ(writer.num_lost(), 6);
   }
-  Put(&writer, 4, 1000);
+  Put(&writer, 7, 1000);
   writer.Close();
+  EXPECT_EQ(writer.num_events(), 8);
   EventLogReader reader(path);
-  EXPECT_THAT(ReadNumbers(&reader), ElementsAre(0, 4));
+  EXPECT_THAT(ReadNumbers(&reader), ElementsAre(0, 7));
   EXPECT_EQ(reader.num_damaged_bytes(), 0);
 }
 

@@ -29,7 +29,8 @@ TEST(TruthTrackTest, SynchronousTruthIsKnownAtItsOwnTimesAlone) {
 
 TEST(TruthTrackTest, DroppedFramesDoNotMakeTruthAsynchronous) {
   std::vector<TruthSample> samples;
-  for (int i = 0; i < 100; ++i) samples.push_back(Sample(1000 * i, 0));
+  samples.reserve(100);
+  for (std::int64_t i = 0; i < 100; ++i) samples.push_back(Sample(1000 * i, 0));
   EXPECT_TRUE(TruthTrack(samples, {7000, 50000, 93000}).is_synchronous());
 }
 
@@ -54,6 +55,7 @@ TEST(TruthTrackTest, JumpsAreBeyond30MmOr10Deg) {
 TEST(TruthTrackTest, TheCamerasOwnMotionIsNoJump) {
   // The camera moves by 50 mm a frame past a head at rest; then the head moves by 50 mm.
   std::vector<TruthSample> samples;
+  samples.reserve(6);
   for (int i = 0; i < 5; ++i) samples.push_back({i, At(-0.05 * i), At(0)});
   samples.push_back({5, At(-0.20), At(0.05)});
   EXPECT_THAT(TruthTrack(samples, {}).jump_utimes_us(), ElementsAre(5));

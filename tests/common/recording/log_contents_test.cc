@@ -13,8 +13,6 @@
 namespace visavis {
 namespace {
 
-using ::testing::StartsWith;
-
 TEST(LogContentsTest, ReadsEveryChannelInOrder) {
   const TemporaryFolder folder;
   RunLog log(folder / "a.lcm");

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/environment.h"
 #include "tests/support/run_log.h"
 #include "tests/support/temporary_folder.h"
 
@@ -38,9 +39,9 @@ class EvaluateToolTest : public ::testing::Test {
     RunLog log(log_path());
     Vector6d error;
     error << 0.003, 0, -0.004, 2 * M_PI / 180, 0, 0;
-    for (int i = 0; i < 40; ++i) {
+    for (std::int64_t i = 0; i < 40; ++i) {
       log.Frame(100'000 * i, i < 3 ? RunLog::kSearching : RunLog::kTracking, Pose(0, 0, 1), error);
-      log.Latency(100'000 * i, 1 + i);
+      log.Latency(100'000 * i, static_cast<double>(1 + i));
     }
   }
   std::string log_path() const { return folder_ / "run.lcm"; }
@@ -195,7 +196,7 @@ TEST_F(EvaluateToolTest, FiguresArePngFiles) {
 }
 
 TEST_F(EvaluateToolTest, WithoutGnuplotTheFiguresFailAndSayHowToGetIt) {
-  const std::string path = std::getenv("PATH");
+  const std::string path = Environment("PATH");
   setenv("PATH", "/nonexistent", 1);
   const Result result = Evaluate({log_path(), "--figures", folder_ / "figures"});
   setenv("PATH", path.c_str(), 1);

@@ -3,10 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "common/config/config_reader.h"
 #include "common/config/config_writer.h"
+#include "tests/support/environment.h"
 
 namespace visavis {
 namespace {
@@ -16,8 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 TEST(LoggerConfigTest, ShippedFileEqualsDefaults) {
-  const std::string shipped =
-      std::string(std::getenv("VISAVIS_SOURCE_DIR")) + "/services/logger/logger.yaml";
+  const std::string shipped = Environment("VISAVIS_SOURCE_DIR") + "/services/logger/logger.yaml";
   EXPECT_EQ(DumpConfig(LoadConfig<LoggerConfig>(shipped)), DumpConfig(LoggerConfig{}));
   const ConfigSource source(shipped, {});
   EXPECT_EQ(source.root().size(), 8u);  // every key is explained there
