@@ -17,6 +17,9 @@ namespace {
 // A simulated log begins here in message time, so that the same scenario has the same bytes.
 constexpr std::int64_t kFastStartUs = 1'000'000'000'000'000;
 
+// A head of which less is in the right picture counts as away.
+constexpr double kSeenShare = 0.1;
+
 RigDescription LoadRig(const std::string& file) {
   RigDescription rig = file.empty() ? DemoRig() : LoadRigFile(file);
   if (!rig.arm || !rig.X_HC)
@@ -86,9 +89,17 @@ std::int64_t SimulatorService::FrameTime(std::int64_t frame) const {
   return start_us_ + std::llround(1e6 * static_cast<double>(frame) / config_.frame_rate_hz);
 }
 
-std::int64_t SimulatorService::next_wake_us() const {
-  if (!prepared_) return context_.live ? 0 : FrameTime(frame_);
+std::int64_t SimulatorService::ArmTime(std::int64_t sample) const {
+  return start_us_ + std::llround(1e6 * static_cast<double>(sample) / config_.arm_rate_hz);
+}
+
+std::int64_t SimulatorService::FrameDue() const {
   return FrameTime(frame_) + std::llround(1000 * config_.readout_ms);
+}
+
+std::int64_t SimulatorService::next_wake_us() const {
+  if (context_.live && !prepared_) return 0;
+  return config_.publish_arm ? std::min(ArmTime(next_arm_), FrameDue()) : FrameDue();
 }
 
 bool SimulatorService::finished() const {
@@ -97,10 +108,11 @@ bool SimulatorService::finished() const {
 
 void SimulatorService::Wake() {
   if (finished()) return;
-  if (!prepared_) PrepareFrame();
-  if (context_.clock->NowUs() < next_wake_us()) return;
   PublishRig(context_.clock->NowUs());
-  PublishFrame();
+  PublishArmStates(context_.clock->NowUs());
+  // Live, rendering takes longer than the readout: it is done ahead.
+  if (!prepared_ && (context_.live || context_.clock->NowUs() >= FrameDue())) PrepareFrame();
+  if (context_.clock->NowUs() >= FrameDue()) PublishFrame();
 }
 
 void SimulatorService::UpdateStatus() { context_.status->SetCounter("late_pairs", late_); }
@@ -112,15 +124,14 @@ RigidTransform SimulatorService::CameraAt(double time_s) {
 void SimulatorService::PublishRig(std::int64_t now_us) {
   if (now_us < next_rig_us_) return;
   next_rig_us_ = std::max(next_rig_us_ + 1'000'000, now_us);
-  rig_message_.utime = FrameTime(frame_);
+  rig_message_.utime = now_us;
   context_.bus->Publish(kStereoRigChannel, rig_message_);
 }
 
 void SimulatorService::PublishArmStates(std::int64_t until_us) {
   if (!config_.publish_arm) return;
   for (;; ++next_arm_) {
-    const auto utime_us =
-        start_us_ + std::llround(1e6 * static_cast<double>(next_arm_) / config_.arm_rate_hz);
+    const std::int64_t utime_us = ArmTime(next_arm_);
     if (utime_us > until_us) return;
     const auto sample = trajectory_.At(TimeOf(utime_us));
     arm_state_.utime = utime_us;
@@ -145,7 +156,7 @@ void SimulatorService::PrepareFrame() {
       {left_rgb_.data(), rig_.rig.left.width, rig_.rig.left.height, 3 * rig_.rig.left.width});
   camera_X_WC_ = truth.X_WC;
   truth_X_CM_.reset();
-  if (truth.head_present) truth_X_CM_ = truth.X_CM;
+  if (truth.head_present && truth.head_visible_share >= kSeenShare) truth_X_CM_ = truth.X_CM;
   images_.utime = utime_us;
   FillImage(rig_.rig.left, left_rgb_, &left_jpeg_, &images_.images[0]);
   FillImage(rig_.rig.right, right_rgb_, &right_jpeg_, &images_.images[1]);

@@ -21,7 +21,8 @@ namespace visavis {
 /// STEREO_RIG, ARM_STATE and HEAD_POSE_TRUTH.
 ///
 /// A pair is rendered ahead of its exposure, since the motion is known; then it goes out readout_ms
-/// after the exposure, behind the arm states of that time, as it would from real cameras.
+/// after the exposure, behind the arm states of that time, as it would from real cameras. Truth is
+/// NaN while less than a tenth of the head is in the right picture.
 class SimulatorService final : public Service {
  public:
   static ServiceTraits Traits();
@@ -40,6 +41,9 @@ class SimulatorService final : public Service {
     return 1e-6 * static_cast<double>(utime_us - start_us_);
   }
   std::int64_t FrameTime(std::int64_t frame) const;
+  std::int64_t ArmTime(std::int64_t sample) const;
+  /// When the pair in work goes out.
+  std::int64_t FrameDue() const;
   RigidTransform CameraAt(double time_s);
   void PublishArmStates(std::int64_t until_us);
   void PublishRig(std::int64_t now_us);

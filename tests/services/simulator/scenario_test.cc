@@ -17,6 +17,7 @@ Scenario Make(const ScenarioConfig& config, std::uint64_t seed = 1) {
 ScenarioConfig Named(const std::string& name) {
   ScenarioConfig config;
   config.name = name;
+  config.head_phi_mm_deg.clear();
   return config;
 }
 
@@ -143,6 +144,12 @@ TEST(ScenarioTest, TheHeadWalksOutOfViewAndIn) {
   EXPECT_NEAR(x(6), 1.3, 1e-12);
   EXPECT_NEAR(x(7), 0.05, 1e-12);
   for (double t = 2.5; t < 8; t += 0.033) EXPECT_LT(std::abs(x(t + 0.033) - x(t)), 0.08);
+}
+
+TEST(ScenarioTest, ByDefaultTheHeadStandsALittleOffItsNominalPlace) {
+  const RigidTransform X_CM0 = X_CM(Make({}), 15.0 / 4);  // the shuttle's middle
+  EXPECT_GT((X_CM0.translation() - Eigen::Vector3d(0, 0, 1)).norm(), 0.005);
+  EXPECT_LT((X_CM0.translation() - Eigen::Vector3d(0, 0, 1)).norm(), 0.02);
 }
 
 TEST(ScenarioTest, RefusesContradictionsByName) {

@@ -43,6 +43,7 @@ struct Settings {
 Settings Still() {
   Settings s;
   s.scenario.name = "static";
+  s.scenario.head_phi_mm_deg.clear();
   s.sensor.noise_sigma = 0;
   return s;
 }
