@@ -47,8 +47,8 @@ struct ScenarioConfig {
   double amplitude_deg{10};  ///< orbit_theta
   double distance_mm{1000};  ///< nominal camera to head
   /// Offset of the head from its nominal place: t_x t_y t_z [mm] Phi theta psi [deg] in the nominal
-  /// camera; empty: none.
-  std::vector<double> head_phi_mm_deg;
+  /// camera; empty: none. Not zero by default, so that no mistake hides behind a zero.
+  std::vector<double> head_phi_mm_deg{6, -9, 0, 2, -4, 3};
   double head_travel_mm{80};  ///< moving_head: greatest way from the nominal place
   double head_turn_deg{15};   ///< moving_head: greatest angle
   double head_period_s{6};    ///< moving_head: of its slowest part

@@ -11,9 +11,6 @@ namespace visavis {
 
 /// Configuration of the simulator; see simulator.yaml.
 struct SimulatorConfig {
-  /// The head is not quite straight before the camera, so that no mistake hides behind a zero.
-  SimulatorConfig() { scenario.head_phi_mm_deg = {6, -9, 0, 2, -4, 3}; }
-
   template <typename A>
   void Serialize(A* a) {
     a->Visit("scenario", &scenario);
