@@ -1,0 +1,63 @@
+#include "services/simulator/simulator_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "common/config/config_reader.h"
+#include "common/config/config_writer.h"
+
+namespace visavis {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+std::string ShippedFile() {
+  const char* source = std::getenv("VISAVIS_SOURCE_DIR");
+  return std::string(source ? source : ".") + "/services/simulator/simulator.yaml";
+}
+
+/// Every key of @p expected is in @p actual.
+void ExpectSameKeys(const YAML::Node& expected, const YAML::Node& actual,
+                    const std::string& prefix) {
+  for (const auto& entry : expected) {
+    const auto key = entry.first.as<std::string>();
+    ASSERT_TRUE(actual[key].IsDefined()) << prefix << key;
+    if (entry.second.IsMap()) ExpectSameKeys(entry.second, actual[key], prefix + key + ".");
+  }
+}
+
+TEST(SimulatorConfigTest, TheShippedFileHoldsEveryDefault) {
+  EXPECT_EQ(DumpConfig(LoadConfig<SimulatorConfig>(ShippedFile())), DumpConfig(SimulatorConfig{}));
+  ExpectSameKeys(YAML::Load(DumpConfig(SimulatorConfig{})), YAML::LoadFile(ShippedFile()), "");
+}
+
+void ExpectRefused(const std::string& assignment, const std::string& key, const std::string& rule) {
+  EXPECT_THAT([&] { LoadConfig<SimulatorConfig>("", {assignment}); },
+              ThrowsMessage<ConfigError>(AllOf(HasSubstr(key), HasSubstr(rule))))
+      << assignment;
+}
+
+TEST(SimulatorConfigTest, RefusesBadValuesByKeyAndRule) {
+  ExpectRefused("scenario.name=dance", "name", "must be one of shuttle_x");
+  ExpectRefused("scenario.amplitude_mm=1500", "amplitude_mm", "0 to 1000 mm");
+  ExpectRefused("scenario.head_phi_mm_deg=[1, 2, 3]", "scenario.head_phi_mm_deg", "must be six");
+  ExpectRefused("scene.subject=adult_z", "scene.subject", "adult_a");
+  ExpectRefused("scene.edge_samples=3", "edge_samples", "1, 2, 4, 8 or 16");
+  ExpectRefused("scene.texture_size=1000", "texture_size", "power of two");
+  ExpectRefused("scene.light=above", "light", "front side");
+  ExpectRefused("sensor.noise_sigma=-1", "noise_sigma", "0 to 40");
+  ExpectRefused("sensor.blur_samples=0", "blur_samples", "1 to 64");
+  ExpectRefused("image_format=bmp", "image_format", "raw jpeg");
+  ExpectRefused("rig_file=/nowhere/rig.yaml", "rig_file", "must be a file that exists");
+  ExpectRefused("arm_rate_hz=20", "arm_rate_hz", "must not be below frame_rate_hz");
+  ExpectRefused("scene.hair=long", "hair", "unknown key");
+}
+
+}  // namespace
+}  // namespace visavis
