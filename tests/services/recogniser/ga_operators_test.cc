@@ -90,7 +90,7 @@ TEST(GaOperatorsTest, CrossoverTakesOneSegmentOfTheFatherAndAnyBitMayBeInIt) {
     const std::uint64_t lowest = segment & (~segment + 1);
     EXPECT_EQ((segment + lowest) & segment, 0u) << std::bitset<48>(segment);
     if (segment != 0) ++crossed;
-    for (std::size_t bit = 0; bit < 48; ++bit) from_father[bit] += segment >> bit & 1;
+    for (std::size_t bit = 0; bit < 48; ++bit) from_father[bit] += (segment >> bit & 1) != 0;
   }
   EXPECT_NEAR(crossed, 1000, 150);  // else mother and father were of one kind
   for (std::size_t bit = 0; bit < 48; ++bit) EXPECT_GT(from_father[bit], 5) << "bit " << bit;
