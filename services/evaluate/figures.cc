@@ -214,7 +214,7 @@ void DrawJumps(const std::vector<Point>& points, std::ostream& out) {
   for (const Point& p : points) {
     if (!p.jump) continue;
     out << "set arrow from " << p.time_s << ", graph 0 to " << p.time_s
-        << ", graph 1 nohead lc rgb '#7a7a7a' dt 3\n";
+        << ", graph 1 nohead front lc rgb '#7a7a7a' dt 3\n";
   }
 }
 

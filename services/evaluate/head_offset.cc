@@ -12,8 +12,9 @@ namespace visavis {
 namespace {
 
 constexpr int kIterations = 50;
-constexpr double kMinScale_m = 1e-4;
-constexpr double kMinScale_rad = 1e-3 * M_PI / 180;
+// No scale is smaller, or a pose frozen for half of the frames would pass for perfect agreement.
+constexpr double kMinScale_m = 1e-3;
+constexpr double kMinScale_rad = 0.3 * M_PI / 180;
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

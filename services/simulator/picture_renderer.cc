@@ -168,6 +168,12 @@ void PictureRenderer::RenderTile(const SceneView& scene, int tile_x, int tile_y,
   std::copy_n(ray_x_.data() + tile * kTilePixels, kTilePixels, x_.data());
   std::copy_n(ray_y_.data() + tile * kTilePixels, kTilePixels, y_.data());
   batch_.size = kTilePixels;
+  const bool whole =
+      (tile_x + 1) * kTile <= camera_.width && (tile_y + 1) * kTile <= camera_.height;
+  if (mask == 0 && tile_drawn_[tile] == 0 && whole && labels == nullptr) {
+    RenderBackgroundTile(scene, tile_x * kTile, tile_y * kTile, picture);
+    return;
+  }
   if (mask != 0) {
     Trace(scene, mask, pixels);
     ShadeHits();
@@ -204,6 +210,24 @@ void PictureRenderer::RenderTile(const SceneView& scene, int tile_x, int tile_y,
     }
     if (keep_samples) samples_[pixel] = sample;
     if (labels != nullptr) labels[pixel] = static_cast<std::uint8_t>(label);
+  }
+}
+
+void PictureRenderer::RenderBackgroundTile(const SceneView& scene, int x0, int y0,
+                                           const RgbView& picture) {
+  static_assert(Background::kRun == 8);  // a block of 4 x 2 pixels
+  for (int block = 0; block < kTilePixels; block += 8) {
+    scene.background->Sample(p_SC_, R_SC_, x_.data() + block, y_.data() + block,
+                             background_.data() + block);
+    for (int i = block; i < block + 8; i += 4) {
+      std::uint8_t* out = picture.row(y0 + TileRow(i)) + 3 * (x0 + TileColumn(i));
+      for (int k = 0; k < 4; ++k) {
+        const std::uint32_t rgb = background_[static_cast<std::size_t>(i + k)];
+        out[3 * k] = static_cast<std::uint8_t>(rgb);
+        out[3 * k + 1] = static_cast<std::uint8_t>(rgb >> 8);
+        out[3 * k + 2] = static_cast<std::uint8_t>(rgb >> 16);
+      }
+    }
   }
 }
 

@@ -56,6 +56,8 @@ class PictureRenderer {
   void MarkTiles(const SceneView& scene, const RigidTransform& X_SC);
   void RenderTile(const SceneView& scene, int tile_x, int tile_y, const RgbView& picture,
                   std::uint8_t* labels, HeadPixels* pixels);
+  /// The tile at pixel (x0, y0), without any actor.
+  void RenderBackgroundTile(const SceneView& scene, int x0, int y0, const RgbView& picture);
   /// Traces batch_ through all actors of @p mask; owner_[i]: the actor hit, or -1.
   void Trace(const SceneView& scene, unsigned mask, HeadPixels* pixels);
   void FindEdges();

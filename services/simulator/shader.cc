@@ -56,6 +56,21 @@ void Shader::Gather(const RayBatch& batch, const float* x, const float* y, const
                     int count, Points* points, Label* labels) const {
   const Eigen::Matrix3f& R = R_OC_;
   std::array<Texture::Tap, RayBatch::kMax> taps;
+  // Triangles, vertices and texels are spread over more memory than the caches near the core hold:
+  // each is asked for one loop before it is used.
+  for (int k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(rays[k]);
+    const Actor::ShadePart& part = actor_->parts()[batch.mesh[i]];
+    __builtin_prefetch(&part.mesh->triangles[batch.triangle[i]]);
+    __builtin_prefetch(&part.texels_per_m[batch.triangle[i]]);
+  }
+  for (int k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(rays[k]);
+    const Actor::ShadePart& part = actor_->parts()[batch.mesh[i]];
+    for (const std::uint32_t vertex : part.mesh->triangles[batch.triangle[i]]) {
+      __builtin_prefetch(&part.vertices[vertex]);
+    }
+  }
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(rays[k]), o = static_cast<std::size_t>(k);
     const Actor::ShadePart& part = actor_->parts()[batch.mesh[i]];

@@ -10,22 +10,24 @@ namespace {
 
 constexpr int kOpennessRays = 48;
 
+/// A mesh as fine as its texture is worth.
+FigureDetail DetailFor(int texture_size) {
+  if (texture_size < 512) return {56, 44, texture_size};
+  return {112, 88, texture_size};
+}
+
 Figure MakeFigure(const SceneConfig& scene) {
   scene.ValidateOrThrow();
   if (!scene.mesh_file.empty()) {
     return LoadFigure(scene.mesh_file, {scene.mesh_scale, scene.mesh_y_up,
                                         Eigen::Vector3d::Map(scene.mesh_origin_m.data())});
   }
-  FigureDetail detail;
-  detail.texture_size = scene.texture_size;
-  return BuildFigure(NamedSubject(scene.subject), detail);
+  return BuildFigure(NamedSubject(scene.subject), DetailFor(scene.texture_size));
 }
 
 Figure MakeBystander(const SceneConfig& scene) {
   if (scene.second_head.empty()) return {};
-  FigureDetail detail;
-  detail.texture_size = std::min(scene.texture_size, 512);
-  return BuildFigure(NamedSubject(scene.second_head), detail);
+  return BuildFigure(NamedSubject(scene.second_head), DetailFor(std::min(scene.texture_size, 512)));
 }
 
 BackgroundConfig WallOf(const SceneConfig& scene) {
