@@ -60,8 +60,10 @@ std::uint32_t Background::Bilinear(int fx, int fy) const {
   return static_cast<std::uint32_t>(sum | sum >> 16);
 }
 
-void Background::Sample(const Eigen::Vector3f& p_SC, const Eigen::Matrix3f& R_SC, const float* x,
-                        const float* y, std::uint32_t* rgb) const {
+[[gnu::target_clones("avx2", "default")]] void Background::Sample(const Eigen::Vector3f& p_SC,
+                                                                  const Eigen::Matrix3f& R_SC,
+                                                                  const float* x, const float* y,
+                                                                  std::uint32_t* rgb) const {
   // Coordinates from the wall's middle in 1/256 pixel; eight pictures' widths keep them positive,
   // where truncation is rounding down.
   constexpr float kLimit = 8.0f * 256 * kHeight, kScale = 256 * kPixelPerM;

@@ -52,8 +52,10 @@ Shader::Shader(const Actor& actor, const Lighting& light, const RigidTransform& 
   up_ = R_OS * -Eigen::Vector3f::UnitY();
 }
 
-void Shader::Gather(const RayBatch& batch, const float* x, const float* y, const std::uint8_t* rays,
-                    int count, Points* points, Label* labels) const {
+[[gnu::target_clones("avx2", "default")]] void Shader::Gather(const RayBatch& batch, const float* x,
+                                                              const float* y,
+                                                              const std::uint8_t* rays, int count,
+                                                              Points* points, Label* labels) const {
   const Eigen::Matrix3f& R = R_OC_;
   std::array<Texture::Tap, RayBatch::kMax> taps;
   // Triangles, vertices and texels are spread over more memory than the caches near the core hold:
@@ -115,7 +117,7 @@ void Shader::Gather(const RayBatch& batch, const float* x, const float* y, const
   }
 }
 
-void Shader::Illuminate(Points* p, int count) const {
+[[gnu::target_clones("avx2", "default")]] void Shader::Illuminate(Points* p, int count) const {
   const Eigen::Vector3f l = light_.key_direction, f = light_.fill_direction, up = up_;
   const Eigen::Vector3f key_colour = light_.key, fill_colour = light_.fill, sky = light_.sky,
                         ground = light_.ground;

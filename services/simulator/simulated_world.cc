@@ -9,6 +9,7 @@ namespace visavis {
 namespace {
 
 constexpr int kOpennessRays = 48;
+constexpr double kShadowPeriod_s = 0.2;
 
 /// A mesh as fine as its texture is worth.
 FigureDetail DetailFor(int texture_size) {
@@ -161,14 +162,9 @@ bool SimulatedWorld::HandShown(double t_s) const {
   return hand_ != nullptr && t_s >= scene_.occluded_from_s && t_s < scene_.occluded_until_s;
 }
 
-void SimulatedWorld::Pose(double t_s) {
-  const RigidTransform X_SM = X_SW_ * scenario_.HeadPose(t_s);
-  const bool with_hand = HandShown(t_s);
-  if (lit_X_SM_ && lit_X_SM_->matrix() == X_SM.matrix() && lit_with_hand_ == with_hand) return;
-  lit_X_SM_ = X_SM;
-  lit_with_hand_ = with_hand;
+std::vector<Actor*> SimulatedWorld::Pose(const RigidTransform& X_SM, bool with_hand) {
   head_->set_X_SO(X_SM);
-  std::vector<const Actor*> actors{head_.get()};
+  std::vector<Actor*> actors{head_.get()};
   if (body_) {
     const RigidTransform X_SB = BodyPose(X_SM, figure_.p_M_neck_m);
     body_->set_X_SO(X_SB);
@@ -179,8 +175,20 @@ void SimulatedWorld::Pose(double t_s) {
     hand_->set_X_SO(X_SM * X_MHand_);
     actors.push_back(hand_.get());
   }
-  for (Actor* actor : {head_.get(), body_.get(), with_hand ? hand_.get() : nullptr}) {
-    if (actor == nullptr) continue;
+  return actors;
+}
+
+void SimulatedWorld::Light(double t_s) {
+  // Shadows are soft and follow the head's turns alone: they are cast for its pose at most
+  // kShadowPeriod_s ago, a function of time like all else.
+  const double lit_t_s = kShadowPeriod_s * std::floor(t_s / kShadowPeriod_s);
+  const RigidTransform X_SM = X_SW_ * scenario_.HeadPose(lit_t_s);
+  const bool with_hand = HandShown(t_s);
+  if (lit_X_SM_ && lit_X_SM_->matrix() == X_SM.matrix() && lit_with_hand_ == with_hand) return;
+  lit_X_SM_ = X_SM;
+  lit_with_hand_ = with_hand;
+  const std::vector<Actor*> actors = Pose(X_SM, with_hand);
+  for (Actor* actor : actors) {
     std::vector<const Actor*> others;
     for (const Actor* other : actors) {
       if (other != actor) others.push_back(other);
@@ -193,11 +201,11 @@ HeadPixels SimulatedWorld::RenderInstant(double t_s, const RigidTransform& X_WC,
                                          const RgbView& right, const RgbView& left) {
   SceneView view{{}, false, background_.get(), &light_};
   if (scenario_.HeadPresent(t_s)) {
-    Pose(t_s);
+    Light(t_s);
     view.has_head = true;
-    view.actors.push_back(head_.get());
-    if (body_) view.actors.push_back(body_.get());
-    if (HandShown(t_s)) view.actors.push_back(hand_.get());
+    for (const Actor* actor : Pose(X_SW_ * scenario_.HeadPose(t_s), HandShown(t_s))) {
+      view.actors.push_back(actor);
+    }
   }
   if (bystander_head_) {
     view.actors.push_back(bystander_head_.get());

@@ -55,7 +55,7 @@ struct SceneConfig {
   std::array<double, 3> second_head_mm{420, -20, 1450};  ///< its place in the nominal camera
   double occluded_share{0};  ///< share of the face behind a hand, seen from the nominal camera
   double occluded_from_s{0}, occluded_until_s{1e9};
-  int edge_samples{8};     ///< rays in a pixel at an edge: 1, 2, 4, 8 or 16
+  int edge_samples{4};     ///< rays in a pixel at an edge: 1, 2, 4, 8 or 16
   int texture_size{1024};  ///< of the face [texel]; half of it: a quarter of the start-up time
 };
 
@@ -106,7 +106,10 @@ class SimulatedWorld {
   /// Head, body and what hides them, posed for one instant. @return their shares seen.
   HeadPixels RenderInstant(double t_s, const RigidTransform& X_WC, const RgbView& right,
                            const RgbView& left);
-  void Pose(double t_s);
+  /// Sets the actors for a head at X_SM; returns those in view: head, body, hand.
+  std::vector<Actor*> Pose(const RigidTransform& X_SM, bool with_hand);
+  /// Casts the key light's shadows for the time @p t_s.
+  void Light(double t_s);
   void PlaceHand();
   bool HandShown(double t_s) const;
 

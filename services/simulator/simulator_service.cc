@@ -144,7 +144,7 @@ void SimulatorService::PublishArmStates(std::int64_t until_us) {
 
 void SimulatorService::PrepareFrame() {
   // A machine too slow for the rate leaves pairs out, as a camera would.
-  while (context_.live && FrameTime(frame_) < context_.clock->NowUs() - 100'000) {
+  while (context_.live && FrameTime(frame_ + 1) < context_.clock->NowUs()) {
     ++frame_;
     ++late_;
     context_.status->Dropped(1);
