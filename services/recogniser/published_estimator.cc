@@ -31,6 +31,11 @@ void StartConfig::ValidateOrThrow(const std::string& prefix) const {
   }
 }
 
+std::optional<RigidTransform> StartConfig::Pose() const {
+  if (phi_mm_deg.empty()) return std::nullopt;
+  return TransformFromPhi(PhiFromMmDeg(phi_mm_deg));
+}
+
 PublishedEstimator::PublishedEstimator(const Settings& settings, const HeadModelConfig& head,
                                        const StereoRig& rig)
     : settings_(settings),

@@ -21,6 +21,9 @@ struct StartConfig {
   /// @throws FieldError, keys under @p prefix.
   void ValidateOrThrow(const std::string& prefix) const;
 
+  /// X_CM; nothing where it is not known.
+  std::optional<RigidTransform> Pose() const;
+
   std::vector<double> phi_mm_deg;  ///< t_x t_y t_z [mm] Phi theta psi [deg]; empty: unknown
   double spread_mm{8};             ///< standard deviation of the first population round it
   double spread_deg{3};

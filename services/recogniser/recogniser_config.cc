@@ -32,6 +32,17 @@ PublishedEstimator::Settings RecogniserConfig::PublishedSettings() const {
           static_cast<std::uint64_t>(seed)};
 }
 
+visavis::RefinedSettings RecogniserConfig::RefinedSettings() const {
+  visavis::RefinedSettings settings;
+  settings.refined = refined;
+  settings.space = SearchSpace::FromConfig(search);
+  settings.recentre = Recentres(search);
+  settings.start_X_CM = start.Pose();
+  settings.feedforward = ParseFeedforward(feedforward);
+  settings.seed = static_cast<std::uint64_t>(seed);
+  return settings;
+}
+
 FeedforwardMode ParseFeedforward(const std::string& word) {
   if (word == "none") return FeedforwardMode::kNone;
   if (word == "jacobian") return FeedforwardMode::kJacobian;

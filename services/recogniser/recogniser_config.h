@@ -6,6 +6,7 @@
 #include "common/config/rule.h"
 #include "services/recogniser/head_model.h"
 #include "services/recogniser/published_estimator.h"
+#include "services/recogniser/refined/refined_config.h"
 
 namespace visavis {
 
@@ -36,7 +37,7 @@ struct RecogniserChannels {
 struct RecogniserConfig {
   template <typename A>
   void Serialize(A* a) {
-    a->Visit("estimator", &estimator, OneOf({"published"}));
+    a->Visit("estimator", &estimator, OneOf({"published", "refined"}));
     a->Visit("feedforward", &feedforward, OneOf({"none", "jacobian", "exact"}));
     a->Visit("ego_motion", &ego_motion, OneOf({"auto", "arm", "camera_pose", "none"}));
     a->Visit("arm_wait_ms", &arm_wait_ms, InRange(0, 1000, "ms"));
@@ -48,6 +49,7 @@ struct RecogniserConfig {
     a->Visit("start", &start);
     a->Visit("ga", &ga);
     a->Visit("published", &published);
+    a->Visit("refined", &refined);
     a->Visit("head", &head);
     a->Visit("channels", &channels);
   }
@@ -56,7 +58,10 @@ struct RecogniserConfig {
 
   /// What the published estimator takes of all this.
   PublishedEstimator::Settings PublishedSettings() const;
+  /// What the refined estimator takes.
+  visavis::RefinedSettings RefinedSettings() const;
 
+  /// published: the paper's method. refined: the same idea taken further.
   std::string estimator{"published"};
   std::string feedforward{"exact"};
   /// Where the camera's motion comes from. auto: the arm where the rig has one and its states come,
@@ -71,6 +76,7 @@ struct RecogniserConfig {
   StartConfig start;
   GaConfig ga;
   PublishedConfig published;
+  RefinedConfig refined;
   HeadModelConfig head;
   RecogniserChannels channels;
 };

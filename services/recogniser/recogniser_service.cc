@@ -8,6 +8,7 @@
 #include "common/convert/rig_message.h"
 #include "common/rigs/rig_file.h"
 #include "services/recogniser/recogniser_messages.h"
+#include "services/recogniser/refined/refined_estimator.h"
 
 namespace visavis {
 namespace {
@@ -72,8 +73,13 @@ RecogniserService::~RecogniserService() = default;
 void RecogniserService::SetRig(const RigDescription& description) {
   ego_motion_.SetRig(description);
   preparer_ = std::make_unique<FramePreparer>(description.rig);
-  estimator_ = std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head,
-                                                    description.rig);
+  if (config_.estimator == "refined") {
+    estimator_ =
+        std::make_unique<RefinedEstimator>(config_.RefinedSettings(), HeadShape{}, description.rig);
+  } else {
+    estimator_ = std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head,
+                                                      description.rig);
+  }
   estimator_->SetFeedforward(feedforward_);
   if (commanded_space_) estimator_->SetSearchSpace(*commanded_space_);
   rig_ = description.rig;

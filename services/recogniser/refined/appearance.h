@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "services/recogniser/refined/face_points.h"
+#include "services/recogniser/refined/pose_equations.h"
+#include "services/recogniser/refined/stereo_view.h"
+
+namespace visavis {
+
+/// A band of one eye's picture at every face point under one pose.
+struct FaceSamples {
+  explicit FaceSamples(std::size_t size) : value(size), slope(size), seen(size) {}
+
+  std::vector<float> value;
+  std::vector<Eigen::Vector3f> slope;  ///< change of value with the point's place in C [1/m]
+  std::vector<unsigned char> seen;     ///< in the picture and turned to the eye
+};
+
+/// Samples @p band where the face is turned to the eye by a cosine of at least @p min_facing.
+void SampleFace(const FacePoints& face, const EyeView& eye, const EyePose& pose, Band band,
+                float min_facing, FaceSamples* samples);
+
+/// value = gain * pattern + offset over the points seen, and how well that explains them.
+struct GainOffset {
+  int count{0};
+  double gain{0}, offset{0};
+  double pattern_rms{0};
+  double correlation{0};  ///< normalised cross-correlation, -1 to 1
+};
+/// @p usable: points that the pattern speaks of.
+GainOffset FitPattern(const FaceSamples& samples, const std::vector<float>& pattern,
+                      const std::vector<unsigned char>& usable);
+
+/// The pattern should be seen where the pose puts it, up to gain and offset. @p relative_sigma:
+/// expected deviation, in units of the pattern's own contrast. @return the fit before the step.
+GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
+                      const Eigen::Matrix3f& R_CM, const std::vector<float>& pattern,
+                      const std::vector<unsigned char>& usable, float relative_sigma, float weight,
+                      PoseEquations* equations);
+
+/// Both eyes should see the same brightness at a point of the surface, up to gain and offset.
+void AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
+               const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations);
+
+}  // namespace visavis

@@ -1,0 +1,53 @@
+#include "services/recogniser/refined/face_texture.h"
+
+#include <algorithm>
+
+namespace visavis {
+namespace {
+
+constexpr float kMinRate = 0.01f;  ///< the texture never freezes wholly
+constexpr double kMinGain = 0.3, kMaxGain = 3;
+constexpr int kFewest = 40;
+
+}  // namespace
+
+FaceTexture::FaceTexture(const FacePoints& face)
+    : generic_(face), points_(face), known_(face.size()) {
+  for (auto& v : value_) v.resize(face.size());
+  for (auto& w : weight_) w.resize(face.size());
+}
+
+void FaceTexture::Move(const RigidTransform& X_MN) {
+  const Eigen::Matrix3f R = X_MN.linear().cast<float>();
+  const Eigen::Vector3f p = X_MN.translation().cast<float>();
+  for (Eigen::Vector3f& point : points_.points) point = R * point + p;
+  for (Eigen::Vector3f& normal : points_.normals) normal = R * normal;
+}
+
+void FaceTexture::Forget() {
+  learned_ = false;
+  points_ = generic_;
+  for (auto& w : weight_) std::fill(w.begin(), w.end(), 0.0f);
+  std::fill(known_.begin(), known_.end(), static_cast<unsigned char>(0));
+}
+
+void FaceTexture::Learn(Band band, const FaceSamples& samples) {
+  float gain = 1, offset = 0;
+  if (learned_) {
+    const GainOffset fit = FitPattern(samples, value_[band], known_);
+    if (fit.count < kFewest) return;
+    gain = static_cast<float>(std::clamp(fit.gain, kMinGain, kMaxGain));
+    offset = static_cast<float>(fit.offset);
+  }
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (!samples.seen[i]) continue;
+    float& weight = weight_[band][i];
+    const float rate = std::max(kMinRate, 1 / (weight + 1));
+    value_[band][i] += rate * ((samples.value[i] - offset) / gain - value_[band][i]);
+    weight += 1;
+    known_[i] = 1;
+  }
+  learned_ = true;
+}
+
+}  // namespace visavis

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "services/recogniser/refined/appearance.h"
+
+namespace visavis {
+
+/// How this face looks, learned from poses that were good: brightness at points in each band, in
+/// the units of the first picture learned from. The points begin on the generic head's surface.
+class FaceTexture {
+ public:
+  explicit FaceTexture(const FacePoints& face);
+
+  void Forget();
+  /// The points in the M frame.
+  const FacePoints& points() const { return points_; }
+  /// Moves all points together: those at p go to @p X_MN p.
+  void Move(const RigidTransform& X_MN);
+  /// Averages @p samples of one eye in, after gain and offset. The first sight counts fully, later
+  /// ones less and less.
+  void Learn(Band band, const FaceSamples& samples);
+
+  bool learned() const { return learned_; }
+  const std::vector<float>& pattern(Band band) const { return value_[band]; }
+  /// Points seen often enough to be compared.
+  const std::vector<unsigned char>& known() const { return known_; }
+
+ private:
+  const FacePoints& generic_;
+  FacePoints points_;
+  bool learned_{false};
+  std::array<std::vector<float>, kNumBands> value_, weight_;
+  std::vector<unsigned char> known_;
+};
+
+}  // namespace visavis

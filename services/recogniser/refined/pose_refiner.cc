@@ -1,0 +1,126 @@
+#include "services/recogniser/refined/pose_refiner.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+namespace visavis {
+namespace {
+
+constexpr int kHairlinePoints = 33;
+constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
+constexpr double kMaxStep_m = 0.025, kMaxStep_rad = 0.15;
+constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the pattern's own contrast
+constexpr float kMinFacing = 0.3f;
+constexpr float kStereoSigma[kNumBands] = {4, 3};  ///< [levels]
+
+}  // namespace
+
+PoseRefiner::PoseRefiner(const RefinerConfig& config, const HeadSurface& surface,
+                         const HeadMesh& mesh, const FacePoints& face)
+    : config_(config),
+      face_(face),
+      contours_(mesh, HairlineOf(surface, kHairlinePoints)),
+      samples_{FaceSamples(face.size()), FaceSamples(face.size())} {}
+
+const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
+                                       const RigidTransform& X_CM, Band band,
+                                       const FacePoints& points) {
+  SampleFace(points, view[eye], EyePose(*view[eye].geometry, X_CM), band, 0.4f, &samples_[eye]);
+  return samples_[eye];
+}
+
+void PoseRefiner::AddContours(const StereoView& view, const std::array<EyePose, 2>& poses,
+                              int reach_px, double weight, PoseEquations* equations,
+                              ContourFit* fit) {
+  if (weight <= 0) return;
+  const auto outline = static_cast<float>(weight);
+  const auto hairline = static_cast<float>(config_.hairline_weight * weight);
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (view[e].seen())
+      contours_.Add(view[e], poses[e], reach_px, outline, hairline, equations, fit);
+  }
+}
+
+void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses,
+                                 Band band, double stereo_weight, PoseEquations* equations) {
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen()) continue;
+    SampleFace(face_, view[e], poses[e], band, kMinFacing, &samples_[e]);
+    AddPattern(face_, samples_[e], poses[e].R_CM, face_.generic[band], face_.has_generic,
+               kPatternSigma, static_cast<float>(config_.pattern_weight), equations);
+  }
+  if (view[0].seen() && view[1].seen()) {
+    AddStereo(face_, samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
+              static_cast<float>(stereo_weight), equations);
+  }
+}
+
+void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
+                             const FaceTexture& texture, PoseEquations* equations,
+                             Refined* refined) {
+  refined->texture_ncc = 0;
+  int eyes = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen()) continue;
+    SampleFace(texture.points(), view[e], poses[e], band, kMinFacing, &samples_[e]);
+    const GainOffset fit = AddPattern(texture.points(), samples_[e], poses[e].R_CM,
+                                      texture.pattern(band), texture.known(), kTextureSigma,
+                                      static_cast<float>(config_.texture_weight), equations);
+    refined->texture_ncc += fit.correlation;
+    ++eyes;
+  }
+  refined->texture_ncc /= std::max(eyes, 1);
+  if (eyes == 2 && config_.stereo_weight_with_texture > 0) {
+    AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
+              static_cast<float>(config_.stereo_weight_with_texture), equations);
+  }
+}
+
+PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform& X_CM) {
+  const std::array<EyePose, 2> poses = {EyePose(*view[0].geometry, X_CM),
+                                        EyePose(*view[1].geometry, X_CM)};
+  PoseEquations equations;
+  ContourFit ignored;
+  AddContours(view, poses, 6, config_.outline_weight, &equations, &ignored);
+  AddGenericFace(view, poses, kFineBand, 0.5 * config_.stereo_weight, &equations);
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();
+  PoseEquations in_head;
+  in_head.H = R.transpose() * equations.Full() * R;
+  in_head.g = R.transpose() * equations.g;
+  return in_head;
+}
+
+Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
+                            const FaceTexture* texture, int iterations, int reach_px) {
+  Refined refined;
+  refined.X_CM = X_CM;
+  for (int i = 0; i < iterations; ++i) {
+    PoseEquations equations;
+    equations.AddPrior(kPrior_m, kPrior_rad);
+    refined.contour = {};
+    const std::array<EyePose, 2> poses = {EyePose(*view[0].geometry, refined.X_CM),
+                                          EyePose(*view[1].geometry, refined.X_CM)};
+    const int reach = i == 0 ? reach_px : i == 1 ? std::min(reach_px, 6) : 4;
+    const Band band = i < iterations / 2 ? kCoarseBand : kFineBand;
+    if (texture != nullptr) {
+      AddContours(view, poses, reach, config_.outline_weight_with_texture, &equations,
+                  &refined.contour);
+      AddTexture(view, poses, band, *texture, &equations, &refined);
+    } else {
+      AddContours(view, poses, reach, config_.outline_weight, &equations, &refined.contour);
+      AddGenericFace(view, poses, band, config_.stereo_weight, &equations);
+    }
+    refined.information = equations.Full();
+    Vector6d step = refined.information.ldlt().solve(equations.g);
+    const double way = step.head<3>().norm(), turn = step.tail<3>().norm();
+    if (way > kMaxStep_m) step.head<3>() *= kMaxStep_m / way;
+    if (turn > kMaxStep_rad) step.tail<3>() *= kMaxStep_rad / turn;
+    refined.X_CM = Moved(refined.X_CM, step);
+    refined.last_step_m = way;
+    refined.last_step_rad = turn;
+  }
+  return refined;
+}
+
+}  // namespace visavis

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+
+#include "common/config/rule.h"
+#include "services/recogniser/refined/contour_term.h"
+#include "services/recogniser/refined/face_texture.h"
+
+namespace visavis {
+
+/// Weights of what pulls a pose, and how far.
+struct RefinerConfig {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("outline_weight", &outline_weight, InRange(0.0, 10.0));
+    a->Visit("outline_weight_with_texture", &outline_weight_with_texture, InRange(0.0, 10.0));
+    a->Visit("hairline_weight", &hairline_weight, InRange(0.0, 10.0));
+    a->Visit("pattern_weight", &pattern_weight, InRange(0.0, 10.0));
+    a->Visit("texture_weight", &texture_weight, InRange(0.0, 10.0));
+    a->Visit("stereo_weight", &stereo_weight, InRange(0.0, 10.0));
+    a->Visit("stereo_weight_with_texture", &stereo_weight_with_texture, InRange(0.0, 10.0));
+  }
+  double outline_weight{1};
+  double outline_weight_with_texture{0.4};
+  double hairline_weight{0.15};  ///< relative to the outline's
+  double pattern_weight{0.4};    ///< generic face
+  double texture_weight{1};
+  double stereo_weight{1};
+  double stereo_weight_with_texture{1};
+};
+
+/// What a refinement found.
+struct Refined {
+  RigidTransform X_CM;
+  Matrix6d information{Matrix6d::Zero()};  ///< of [dp; w] in C, from the last step's equations
+  ContourFit contour;                      ///< both eyes
+  double texture_ncc{0};                   ///< mean of the eyes; 0: not learned
+  double last_step_m{0}, last_step_rad{0};
+};
+
+/// Gauss-Newton on a pose over contours, the generic face, the learned texture and the agreement of
+/// both eyes.
+class PoseRefiner {
+ public:
+  PoseRefiner(const RefinerConfig& config, const HeadSurface& surface, const HeadMesh& mesh,
+              const FacePoints& face);
+
+  /// @param texture   learned, or null: the generic face then.
+  /// @param reach_px  of the first step's contours; later ones look nearer.
+  Refined Refine(const StereoView& view, const RigidTransform& X_CM, const FaceTexture* texture,
+                 int iterations, int reach_px);
+
+  /// What the generic model alone says of the head at @p X_CM: equations of a correction [dp; w] in
+  /// the M frame, X_CM' = X_CM [Exp(w), dp].
+  PoseEquations Generic(const StereoView& view, const RigidTransform& X_CM);
+
+  /// Samples of the face under @p X_CM, eye by eye, for learning.
+  const FaceSamples& Sample(const StereoView& view, std::size_t eye, const RigidTransform& X_CM,
+                            Band band, const FacePoints& points);
+
+ private:
+  void AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
+                      double stereo_weight, PoseEquations* equations);
+  void AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
+                  const FaceTexture& texture, PoseEquations* equations, Refined* refined);
+  void AddContours(const StereoView& view, const std::array<EyePose, 2>& poses, int reach_px,
+                   double weight, PoseEquations* equations, ContourFit* fit);
+
+  RefinerConfig config_;
+  const FacePoints& face_;
+  ContourTerm contours_;
+  std::array<FaceSamples, 2> samples_;
+};
+
+}  // namespace visavis

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/config/rule.h"
+#include "services/recogniser/estimator.h"
+#include "services/recogniser/refined/pose_refiner.h"
+#include "services/recogniser/refined/real_population.h"
+
+namespace visavis {
+
+/// When the refined estimator believes a pose. A colour fitness or small residuals do not tell a
+/// face from a place that looks like one; the correlation with the features' pattern does.
+struct EvidenceConfig {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("lock_ncc", &lock_ncc, InRange(-1.0, 1.0));
+    a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
+    a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
+    a->Visit("keep_texture_ncc", &keep_texture_ncc, InRange(-1.0, 1.0));
+    a->Visit("keep_ncc", &keep_ncc, InRange(-1.0, 1.0));
+    a->Visit("confirm_frames", &confirm_frames, InRange(1, 100));
+    a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
+  }
+  double lock_ncc{0.3};          ///< generic pattern, before TRACKING
+  double lock_outside{-0.4};     ///< at most: how much the surroundings look like a head
+  double lock_inside{0.4};       ///< at least: how much the inside does
+  double keep_texture_ncc{0.6};  ///< learned texture, while TRACKING
+  double keep_ncc{0.1};          ///< generic pattern, while TRACKING
+  int confirm_frames{1};         ///< good frames in a row before TRACKING
+  int strange_frames{3};         ///< so often a face other than the learned one: learn it anew
+};
+
+/// All that the refined estimator can be set to.
+struct RefinedConfig {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("track_evaluations", &track_evaluations, InRange(0, 100000));
+    a->Visit("search_shots", &search_shots, InRange(0, 100000));
+    a->Visit("search_evaluations", &search_evaluations, InRange(100, 100000));
+    a->Visit("search_starts", &search_starts, InRange(1, 20));
+    a->Visit("iterations", &iterations, InRange(2, 50));
+    a->Visit("search_iterations", &search_iterations, InRange(2, 50));
+    a->Visit("population", &population);
+    a->Visit("refiner", &refiner);
+    a->Visit("evidence", &evidence);
+  }
+  int track_evaluations{90};    ///< of the fitness, in a frame with a track
+  int search_shots{3000};       ///< poses glanced at, in a frame without
+  int search_evaluations{800};  ///< of the fitness by the GA after them
+  int search_starts{5};         ///< best distinct individuals that are refined then
+  int iterations{4};            ///< Gauss-Newton, in a frame with a track
+  int search_iterations{8};     ///< Gauss-Newton, of each start
+  RealGaConfig population;
+  RefinerConfig refiner;
+  EvidenceConfig evidence;
+};
+
+/// What a refined estimator is made with.
+struct RefinedSettings {
+  RefinedConfig refined;
+  SearchSpace space;
+  bool recentre{true};
+  FeedforwardMode feedforward{FeedforwardMode::kExact};
+  std::optional<RigidTransform> start_X_CM;  ///< where the head is, if it is known
+  std::uint64_t seed{1};
+};
+
+}  // namespace visavis

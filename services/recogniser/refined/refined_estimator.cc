@@ -1,0 +1,394 @@
+#include "services/recogniser/refined/refined_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace visavis {
+namespace {
+
+constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
+constexpr double kFaceSpacing_m = 0.005;
+constexpr double kBoxRadius_m = 0.19;
+constexpr double kLeastGlance = -0.3;  ///< below: not worth an evaluation
+constexpr int kLeastBox_px = 32;
+constexpr int kVerifyRounds = 2;
+constexpr std::size_t kVerified = 3;  ///< best places that are verified
+constexpr double kTurn_rad = 0.3;
+constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
+constexpr double kHopeless = -3;                      ///< fitness then
+
+double Angle(const RigidTransform& a, const RigidTransform& b) {
+  return LogRotation(a.linear().transpose() * b.linear()).norm();
+}
+
+double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + space.max[2]); }
+
+}  // namespace
+
+RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadShape& head,
+                                   const StereoRig& rig)
+    : settings_(settings),
+      surface_(head),
+      mesh_(MeshOf(surface_, kMeshLevel)),
+      face_(FacePointsOf(surface_, kFaceSpacing_m)),
+      pair_(rig, MiddleDistance(settings.space)),
+      coarse_fitness_(MeshOf(surface_, kCoarseMeshLevel), face_),
+      fitness_(mesh_, face_),
+      refiner_(settings.refined.refiner, surface_, mesh_, face_),
+      texture_(face_),
+      scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
+              ScoreMap(pair_.eye(1).width, pair_.eye(1).height)},
+      bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
+             BandImages(pair_.eye(1).width, pair_.eye(1).height)},
+      population_(settings.refined.population, settings.seed) {
+  Reset();
+}
+
+void RefinedEstimator::Reset() {
+  ForgetFace();
+  for (ColorModel& colors : colors_) colors.Reset();
+  population_.SetSpace(settings_.space);
+  population_.Restart();
+  X_CM_ = settings_.start_X_CM;
+  estimate_ = Estimate{};
+  frames_ = 0;
+  good_in_a_row_ = bad_in_a_row_ = 0;
+}
+
+void RefinedEstimator::ForgetFace() {
+  texture_.Forget();
+  anchor_.Forget();
+  strange_in_a_row_ = 0;
+}
+
+void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
+  settings_.space = space;
+  population_.SetSpace(space);
+}
+
+void RefinedEstimator::TakePictures(const StereoFrame& frame) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    pictures_[i] = pair_.Picture(frame, i);
+    if (frames_ == 0 && pictures_[i] && pictures_[i]->format != PixelFormat::kGray)
+      colors_[i].StartFrom(*pictures_[i]);
+  }
+}
+
+void RefinedEstimator::BuildMaps(const RigidTransform* X_CM) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    view_[i] = {&pair_.eye(i), nullptr, nullptr};
+    if (!pictures_[i]) continue;
+    const PixelBox box = X_CM ? pair_.BoxAround(i, *X_CM, kBoxRadius_m) : pair_.WholeBox(i);
+    if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
+    scores_[i].Build(*pictures_[i], colors_[i], box);
+    bands_[i].Build(*pictures_[i], box);
+    view_[i].scores = &scores_[i];
+    view_[i].bands = &bands_[i];
+  }
+}
+
+// Fig. 3: the pose and all individuals are moved against the camera's motion.
+void RefinedEstimator::Feedforward(const CameraStep& step) {
+  estimate_.feedforward = FeedforwardMode::kNone;
+  if (!step.known || settings_.feedforward == FeedforwardMode::kNone) return;
+  estimate_.feedforward = settings_.feedforward;
+  const auto move = [&](Vector6d* phi) {
+    *phi = settings_.feedforward == FeedforwardMode::kExact
+               ? Carry(step.X_C2C1, *phi)
+               : EulerStep(*phi, step.X_WC1.linear(), step.twist_1, step.dt_s);
+  };
+  population_.Move(move);
+  if (!X_CM_) return;
+  Vector6d phi = PhiFromTransform(*X_CM_);
+  move(&phi);
+  X_CM_ = TransformFromPhi(phi);
+}
+
+RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X_CM,
+                                                         const FaceTexture* texture, int iterations,
+                                                         int reach_px) {
+  Candidate candidate;
+  candidate.refined = refiner_.Refine(view_, X_CM, texture, iterations, reach_px);
+  candidate.score = fitness_.Evaluate(view_, candidate.refined.X_CM, face_.generic[kCoarseBand],
+                                      face_.has_generic, 1);
+  return candidate;
+}
+
+RefinedEstimator::Candidate RefinedEstimator::Track() {
+  const FaceTexture* texture = texture_.learned() ? &texture_ : nullptr;
+  Candidate best = RefineFrom(*X_CM_, texture, settings_.refined.iterations, 9);
+  estimate_.evaluations += 1;
+  const auto fitness = [&](const Vector6d& phi) {
+    ++estimate_.evaluations;
+    return coarse_fitness_
+        .Evaluate(view_, TransformFromPhi(phi), face_.generic[kCoarseBand], face_.has_generic, 2)
+        .total();
+  };
+  if (settings_.refined.track_evaluations == 0) return best;
+  population_.Evaluate(fitness);
+  while (estimate_.evaluations < settings_.refined.track_evaluations) {
+    population_.Reproduce(fitness);
+    ++estimate_.generations;
+  }
+  const RigidTransform X_elite = TransformFromPhi(population_.best().phi);
+  const double distance = (X_elite.translation() - best.refined.X_CM.translation()).norm();
+  if (distance > 0.015 && population_.best().fitness > best.score.total() + 0.1) {
+    const Candidate other = RefineFrom(X_elite, texture, settings_.refined.iterations, 9);
+    if (other.score.total() > best.score.total() + 0.05) best = other;
+  }
+  const Vector6d phi = PhiFromTransform(best.refined.X_CM);
+  population_.Insert(phi, fitness(phi));
+  return best;
+}
+
+RefinedEstimator::Candidate RefinedEstimator::Search() {
+  const auto fitness = [&](const Vector6d& phi) {
+    const RigidTransform X = TransformFromPhi(phi);
+    const double glance = coarse_fitness_.GlanceAtSkin(view_, X);
+    if (glance < kLeastGlance) return kHopeless + glance;
+    ++estimate_.evaluations;
+    return coarse_fitness_.Evaluate(view_, X, face_.generic[kCoarseBand], face_.has_generic, 2)
+        .total();
+  };
+  population_.Evaluate(fitness);
+  population_.Shoot(settings_.refined.search_shots, fitness);
+  const int until = estimate_.evaluations + settings_.refined.search_evaluations;
+  const int most = estimate_.generations + settings_.refined.search_evaluations / 10;
+  while (estimate_.evaluations < until && estimate_.generations < most) {
+    population_.Reproduce(fitness);
+    ++estimate_.generations;
+  }
+  // The best distinct places, each as found and looking straight ahead.
+  const int iterations = settings_.refined.search_iterations;
+  std::vector<RigidTransform> starts;
+  for (const Individual& individual : population_.individuals()) {
+    const RigidTransform X = TransformFromPhi(individual.phi);
+    const bool is_near = std::any_of(starts.begin(), starts.end(), [&](const RigidTransform& s) {
+      return (s.translation() - X.translation()).norm() < 0.025 && Angle(s, X) < 0.15;
+    });
+    if (is_near) continue;
+    starts.push_back(X);
+    if (static_cast<int>(starts.size()) == settings_.refined.search_starts) break;
+  }
+  candidates_.clear();
+  const auto consider = [&](const RigidTransform& X) {
+    candidates_.push_back(RefineFrom(X, nullptr, iterations, 10));
+  };
+  for (const RigidTransform& X : starts) {
+    consider(X);
+    consider(MakeTransform(Eigen::Matrix3d::Identity().eval(), X.translation()));
+  }
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    return a.score.total() > b.score.total();
+  });
+  return BestVerified();
+}
+
+// Of the best distinct places that which stands the test best; the colours are learned from it.
+RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
+  colors_before_ = colors_;
+  std::optional<Candidate> best;
+  std::array<RigidTransform, kVerified> places;
+  std::size_t tried = 0;
+  for (const Candidate& candidate : candidates_) {
+    const RigidTransform& X = candidate.refined.X_CM;
+    if (std::any_of(places.begin(), places.begin() + tried, [&](const RigidTransform& other) {
+          return (other.translation() - X.translation()).norm() < 0.02 && Angle(other, X) < 0.15;
+        }))
+      continue;
+    colors_ = colors_before_;
+    const Candidate verified = Verify(candidate);
+    if (!best || verified.score.total() > best->score.total()) {
+      best = verified;
+      colors_best_ = colors_;
+    }
+    places[tried++] = X;
+    if (tried == kVerified) break;
+  }
+  colors_ = colors_best_;
+  return TryTurned(*best);
+}
+
+// A face seen askew may have been fitted upside down into its own features: turned starts with the
+// colours that are now known tell.
+RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candidate) {
+  const RigidTransform X = candidate.refined.X_CM;
+  if (!X.matrix().allFinite()) return candidate;
+  BuildMaps(&X);
+  Candidate best = candidate;
+  for (const Eigen::Vector3d& turn : {Eigen::Vector3d(kTurn_rad, 0, 0),
+                                      {-kTurn_rad, 0, 0},
+                                      {0, kTurn_rad, 0},
+                                      {0, -kTurn_rad, 0}}) {
+    const Candidate other =
+        RefineFrom(MakeTransform((X.linear() * ExpRotation(turn)).eval(), X.translation()), nullptr,
+                   settings_.refined.search_iterations, 9);
+    if (IsPlausible(other.refined.X_CM) && other.score.total() > best.score.total()) best = other;
+  }
+  return best;
+}
+
+RefinedEstimator::Candidate RefinedEstimator::Verify(const Candidate& candidate) {
+  Candidate verified = candidate;
+  for (int round = 0; round < kVerifyRounds; ++round) {
+    if (!verified.refined.X_CM.matrix().allFinite()) return verified;
+    LearnColors(verified.refined.X_CM);
+    BuildMaps(&verified.refined.X_CM);
+    verified = RefineFrom(verified.refined.X_CM, nullptr, settings_.refined.iterations, 7);
+  }
+  return verified;
+}
+
+RefinedEstimator::Candidate RefinedEstimator::Recognise(const Candidate& candidate) {
+  if (!texture_.learned()) return candidate;
+  const Candidate known =
+      RefineFrom(candidate.refined.X_CM, &texture_, settings_.refined.search_iterations, 7);
+  return IsKnownFace(known) ? known : candidate;
+}
+
+bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
+  if (!X_CM.matrix().allFinite()) return false;
+  const Vector6d phi = PhiFromTransform(X_CM);
+  const SearchSpace& space = settings_.space;
+  return ((phi - space.min).tail<3>().array() > -kBeyond_rad).all() &&
+         ((space.max - phi).tail<3>().array() > -kBeyond_rad).all() &&
+         phi[2] > space.min[2] - kBeyond_m && phi[2] < space.max[2] + kBeyond_m;
+}
+
+// What a face must show whoever it is.
+bool RefinedEstimator::IsFace(const Candidate& c) const {
+  const EvidenceConfig& e = settings_.refined.evidence;
+  return IsPlausible(c.refined.X_CM) && c.score.ncc > e.lock_ncc &&
+         (!c.score.has_color ||
+          (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside));
+}
+
+// What the face that was learned must show.
+bool RefinedEstimator::IsKnownFace(const Candidate& c) const {
+  const EvidenceConfig& e = settings_.refined.evidence;
+  return IsPlausible(c.refined.X_CM) && texture_.learned() &&
+         c.refined.texture_ncc > e.keep_texture_ncc && c.score.ncc > e.keep_ncc;
+}
+
+void RefinedEstimator::Judge(bool good) {
+  good_in_a_row_ = good ? good_in_a_row_ + 1 : 0;
+  bad_in_a_row_ = good ? 0 : bad_in_a_row_ + 1;
+  const EvidenceConfig& e = settings_.refined.evidence;
+  TrackStatus& status = estimate_.status;
+  if (status == TrackStatus::kTracking) {
+    if (bad_in_a_row_ > 0) status = TrackStatus::kLost;
+  } else if (good_in_a_row_ >= e.confirm_frames) {
+    status = TrackStatus::kTracking;
+  }
+}
+
+void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!view_[i].seen() || !scores_[i].has_color()) continue;
+    const EyePose pose(pair_.eye(i), X_CM);
+    const EyeGeometry& g = pair_.eye(i);
+    const ImageView& picture = *pictures_[i];
+    const int red = picture.format == PixelFormat::kBgr ? 2 : 0;
+    const auto bin = [&](const Eigen::Vector3f& p_M) {
+      const Eigen::Vector3f p = pose.InEye(p_M);
+      if (p.z() < 0.1f) return -1;
+      const int u = static_cast<int>(std::lround(g.cx + g.fx * p.x() / p.z()));
+      const int v = static_cast<int>(std::lround(g.cy + g.fy * p.y() / p.z()));
+      if (u < 0 || v < 0 || u >= g.width || v >= g.height) return -1;
+      const std::uint8_t* rgb = picture.row(v) + 3 * u;
+      return ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]);
+    };
+    counts_.Clear();
+    for (std::size_t k = 0; k < mesh_.vertices.size(); ++k) {
+      const Eigen::Vector3f view = mesh_.vertices[k] - pose.p_ME;
+      const float facing = -mesh_.normals[k].dot(view) / view.norm();
+      if (facing > 0.3f && mesh_.coloured[k]) {
+        const int b = bin(mesh_.vertices[k]);
+        if (b >= 0) counts_.Add(mesh_.parts[k] == HeadPart::kHair ? kHairColor : kSkinColor, b);
+      } else if (std::abs(facing) < 0.2f && mesh_.contour_weights[k] > 0) {
+        for (const float beyond : {0.014f, 0.024f, 0.036f}) {
+          const int b = bin(mesh_.vertices[k] + beyond * mesh_.normals[k]);
+          if (b >= 0) counts_.Add(kSurroundings, b);
+        }
+      }
+    }
+    Random random(static_cast<std::uint64_t>(frames_));
+    for (int k = 0; k < 300; ++k) {
+      const std::uint8_t* rgb =
+          picture.row(random.Index(picture.height)) + 3 * random.Index(picture.width);
+      counts_.Add(kSurroundings, ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]), 0.3f);
+    }
+    colors_[i].Learn(&counts_);
+  }
+}
+
+void RefinedEstimator::Learn() {
+  if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
+  if (estimate_.status != TrackStatus::kTracking) return;
+  for (const Band band : {kFineBand, kCoarseBand}) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (view_[i].seen())
+        texture_.Learn(band,
+                       refiner_.Sample(view_, i, candidate_.refined.X_CM, band, texture_.points()));
+    }
+  }
+}
+
+// The frame of a learned face goes where all views' generic models agree best.
+void RefinedEstimator::MoveAnchor() {
+  RigidTransform& X_CM = candidate_.refined.X_CM;
+  const Eigen::Vector3d direction = -(X_CM.linear().transpose() * X_CM.translation()).normalized();
+  anchor_.Add(direction, refiner_.Generic(view_, X_CM));
+  const RigidTransform X_MN = anchor_.Correct();
+  X_CM = X_CM * X_MN;
+  texture_.Move(X_MN.inverse());
+}
+
+const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const CameraStep& step,
+                                          StageTimer* timer) {
+  timer->Enter(Stage::kFeedforward);
+  Feedforward(step);
+  estimate_.generations = estimate_.evaluations = 0;
+  const bool tracked = X_CM_ && bad_in_a_row_ == 0;
+  timer->Enter(Stage::kMap);
+  TakePictures(frame);
+  BuildMaps(tracked ? &*X_CM_ : nullptr);
+  bool good = false;
+  if (tracked) {
+    timer->Enter(Stage::kRefinement);
+    candidate_ = Track();
+    good = texture_.learned() ? IsKnownFace(candidate_) : IsFace(candidate_);
+    if (!good) {
+      timer->Enter(Stage::kMap);
+      BuildMaps(nullptr);
+    }
+  }
+  if (!good) {
+    timer->Enter(Stage::kGeneration);
+    population_.Renew(0.3);
+    candidate_ = Recognise(Search());
+    good = IsKnownFace(candidate_);
+    if (!good && IsFace(candidate_)) {
+      // A face, but not as learned: the texture was wrong, or it is another one.
+      good =
+          !texture_.learned() || ++strange_in_a_row_ >= settings_.refined.evidence.strange_frames;
+      if (good) ForgetFace();
+    }
+    if (!good) colors_ = colors_before_;
+  }
+  if (good) strange_in_a_row_ = 0;
+  timer->Enter(Stage::kOther);
+  Judge(good);
+  if (good && texture_.learned()) MoveAnchor();
+  X_CM_ = candidate_.refined.X_CM;
+  estimate_.X_CM = X_CM_;
+  estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
+                       candidate_.score.ncc};
+  estimate_.covariance = candidate_.refined.information.inverse();
+  total_generations_ += estimate_.generations;
+  if (good) Learn();
+  ++frames_;
+  return estimate_;
+}
+
+}  // namespace visavis

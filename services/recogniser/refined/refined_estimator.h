@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "services/recogniser/estimator.h"
+#include "services/recogniser/refined/color_model.h"
+#include "services/recogniser/refined/head_anchor.h"
+#include "services/recogniser/refined/mesh_fitness.h"
+#include "services/recogniser/refined/refined_config.h"
+#include "services/recogniser/refined/working_pair.h"
+
+namespace visavis {
+
+/// Evolutionary search over a stereo model-based fitness, carried by feedforward, its elite refined
+/// by Gauss-Newton over contours, the face's pattern, learned texture and left-right agreement.
+class RefinedEstimator final : public Estimator {
+ public:
+  RefinedEstimator(const RefinedSettings& settings, const HeadShape& head, const StereoRig& rig);
+
+  const Estimate& Process(const StereoFrame& frame, const CameraStep& step,
+                          StageTimer* timer) override;
+  void Reset() override;
+  void SetFeedforward(FeedforwardMode mode) override { settings_.feedforward = mode; }
+  void SetSearchSpace(const SearchSpace& space) override;
+  const std::vector<Individual>& population() const override { return population_.individuals(); }
+  std::int64_t total_generations() const override { return total_generations_; }
+
+  /// A pose that was refined, and what speaks for it.
+  struct Candidate {
+    Refined refined;
+    MeshScore score;  ///< against the generic pattern
+  };
+  const Candidate& last() const { return candidate_; }
+
+ private:
+  void ForgetFace();
+  void TakePictures(const StereoFrame& frame);
+  /// Maps of the whole pictures, or of the part round @p X_CM.
+  void BuildMaps(const RigidTransform* X_CM);
+  void Feedforward(const CameraStep& step);
+  Candidate RefineFrom(const RigidTransform& X_CM, const FaceTexture* texture, int iterations,
+                       int reach_px);
+  Candidate Track();
+  Candidate Search();
+  Candidate BestVerified();
+  Candidate TryTurned(const Candidate& candidate);
+  /// What remains of @p candidate when the colours are learned from it: of a head more than before,
+  /// of a chance likeness less. The colour models are left as learned.
+  Candidate Verify(const Candidate& candidate);
+  /// The learned texture's view of a pose that the generic face found.
+  Candidate Recognise(const Candidate& candidate);
+  bool IsPlausible(const RigidTransform& X_CM) const;
+  bool IsFace(const Candidate& candidate) const;
+  bool IsKnownFace(const Candidate& candidate) const;
+  void Judge(bool good);
+  void Learn();
+  void LearnColors(const RigidTransform& X_CM);
+  void MoveAnchor();
+
+  RefinedSettings settings_;
+  const HeadSurface surface_;
+  const HeadMesh mesh_;
+  const FacePoints face_;
+  WorkingPair pair_;
+  MeshFitness coarse_fitness_, fitness_;
+  PoseRefiner refiner_;
+  FaceTexture texture_;
+  HeadAnchor anchor_;
+  std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
+  ColorModel::Counts counts_;
+  std::array<ScoreMap, 2> scores_;
+  std::array<BandImages, 2> bands_;
+  std::array<std::optional<ImageView>, 2> pictures_;
+  StereoView view_;
+  RealPopulation population_;
+  std::optional<RigidTransform> X_CM_;  ///< of the last frame, carried to this one
+  Candidate candidate_;
+  std::vector<Candidate> candidates_;
+  Estimate estimate_;
+  std::int64_t frames_{0}, total_generations_{0};
+  int good_in_a_row_{0}, bad_in_a_row_{0}, strange_in_a_row_{0};
+};
+
+}  // namespace visavis

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "common/image/image.h"
+#include "services/recogniser/refined/color_model.h"
+#include "services/recogniser/refined/eye.h"
+
+namespace visavis {
+
+/// PackedScores of every pixel within a box of a picture.
+class ScoreMap {
+ public:
+  /// Allocates for pictures of @p width x @p height px.
+  ScoreMap(int width, int height)
+      : width_(width), height_(height), scores_(static_cast<std::size_t>(width * height)) {}
+
+  /// Fills @p box from a kRgb or kBgr picture; a kGray one leaves all scores neutral. What was
+  /// filled before becomes unknown.
+  void Build(const ImageView& image, const ColorModel& model, const PixelBox& box);
+
+  /// The nearest pixel's scores; unknown and neutral outside of the box.
+  PackedScores At(float u, float v) const {
+    const float x = u + 0.5f, y = v + 0.5f;
+    if (!(x >= static_cast<float>(box_.x0) && y >= static_cast<float>(box_.y0) &&
+          x < static_cast<float>(box_.x1) && y < static_cast<float>(box_.y1))) {
+      return kUnknown;
+    }
+    return scores_[static_cast<std::size_t>(static_cast<int>(y) * width_ + static_cast<int>(x))];
+  }
+  const PixelBox& box() const { return box_; }
+  bool has_color() const { return has_color_; }
+
+  static constexpr PackedScores kUnknown = 0x00808080u;
+
+ private:
+  int width_, height_;
+  bool has_color_{false};
+  PixelBox box_;
+  std::vector<PackedScores> scores_;
+};
+
+}  // namespace visavis

@@ -1,0 +1,90 @@
+#include "services/recogniser/refined/working_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace visavis {
+namespace {
+
+constexpr double kPixelsPerM = 800;
+constexpr int kBoxGrid = 16;
+
+int HalvingsFor(const Pinhole& camera, double distance_m) {
+  const double ratio = camera.fx / (distance_m * kPixelsPerM);
+  return std::max(0, static_cast<int>(std::lround(std::log2(ratio))));
+}
+
+Pinhole Halved(Pinhole camera, int times) {
+  camera.distortion = {};
+  for (int i = 0; i < times; ++i) {
+    camera.width /= 2;
+    camera.height /= 2;
+    camera.fx /= 2;
+    camera.fy /= 2;
+    camera.cx = 0.5 * (camera.cx + 0.5) - 0.5;
+    camera.cy = 0.5 * (camera.cy + 0.5) - 0.5;
+  }
+  return camera;
+}
+
+/// @p from at half its size, each pixel the mean of four.
+ImageView Halve(const ImageView& from, std::vector<std::uint8_t>* memory) {
+  const int channels = BytesPerPixel(from.format);
+  ImageView to = from;
+  to.width = from.width / 2;
+  to.height = from.height / 2;
+  to.stride = to.width * channels;
+  to.size = static_cast<std::size_t>(to.stride) * static_cast<std::size_t>(to.height);
+  if (memory->size() < to.size) memory->resize(to.size);
+  to.data = memory->data();
+  for (int y = 0; y < to.height; ++y) {
+    const std::uint8_t *a = from.row(2 * y), *b = from.row(2 * y + 1);
+    std::uint8_t* out = memory->data() + static_cast<std::ptrdiff_t>(y) * to.stride;
+    for (int x = 0; x < to.width; ++x) {
+      for (int c = 0; c < channels; ++c) {
+        const int i = 2 * x * channels + c;
+        out[x * channels + c] =
+            static_cast<std::uint8_t>((a[i] + a[i + channels] + b[i] + b[i + channels] + 2) / 4);
+      }
+    }
+  }
+  return to;
+}
+
+int Down(double px, int limit) {
+  return std::clamp(static_cast<int>(std::floor(px / kBoxGrid)) * kBoxGrid, 0, limit);
+}
+
+}  // namespace
+
+WorkingPair::WorkingPair(const StereoRig& rig, double distance_m)
+    : halvings_(HalvingsFor(rig.right, distance_m)),
+      eyes_{EyeGeometry(Halved(rig.right, halvings_), RigidTransform::Identity()),
+            EyeGeometry(Halved(rig.left, halvings_), rig.X_CL)} {}
+
+std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::size_t i) {
+  std::optional<ImageView> picture = i == 0 ? frame.right : frame.left;
+  if (!picture) return picture;
+  for (int k = 0; k < halvings_; ++k) {
+    picture = Halve(*picture, k % 2 == 0 ? &halved_[i] : &scratch_[i]);
+  }
+  return picture;
+}
+
+PixelBox WorkingPair::WholeBox(std::size_t i) const {
+  return {0, 0, eyes_[i].width / kBoxGrid * kBoxGrid, eyes_[i].height / kBoxGrid * kBoxGrid};
+}
+
+PixelBox WorkingPair::BoxAround(std::size_t i, const RigidTransform& X_CM, double radius_m) const {
+  const EyeGeometry& eye = eyes_[i];
+  const Eigen::Vector3d p = (eye.R_EC * X_CM.translation().cast<float>() + eye.p_EC).cast<double>();
+  const PixelBox whole = WholeBox(i);
+  const double nearest = p.z() - radius_m;
+  if (nearest < 0.1) return whole;
+  const double u = eye.cx + eye.fx * p.x() / p.z(), v = eye.cy + eye.fy * p.y() / p.z();
+  const double half_u = eye.fx * radius_m / nearest, half_v = eye.fy * radius_m / nearest;
+  return {Down(u - half_u, whole.x1), Down(v - half_v, whole.y1),
+          Down(u + half_u + kBoxGrid, whole.x1), Down(v + half_v + kBoxGrid, whole.y1)};
+}
+
+}  // namespace visavis
