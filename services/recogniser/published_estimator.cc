@@ -52,6 +52,7 @@ void PublishedEstimator::Reset() {
   const StartConfig& start = settings_.start;
   if (start.phi_mm_deg.empty()) return;
   const Vector6d phi = PhiFromMmDeg(start.phi_mm_deg);
+  monitor_.Expect(TransformFromPhi(phi));
   CentreOn(phi.head<3>());
   Vector6d spread;
   spread << Eigen::Vector3d::Constant(start.spread_mm * 1e-3),
@@ -142,7 +143,8 @@ const Estimate& PublishedEstimator::Process(const StereoFrame& frame, const Came
   Evolve(maps);
   timer->Enter(Stage::kOther);
   const PackedMap* map = maps.right ? maps.right : maps.left;
-  estimate_.status = monitor_.Update(*estimate_.X_CM, estimate_.fitness, map->has_color(), step);
+  estimate_.status =
+      monitor_.Update(*estimate_.X_CM, estimate_.fitness, map->has_color(), step, ga_.space());
   FollowHead();
   return estimate_;
 }
