@@ -15,7 +15,8 @@ Vector6d PhiFromMmDeg(const std::vector<double>& values) {
   return phi;
 }
 
-// A head that stays lost this long is looked for afresh, everywhere.
+// A lost head of which the population shows nothing for so long is looked for afresh, everywhere.
+// While it shows something the population is better than a random one.
 constexpr int kRestartAfterLostFrames = 30;
 
 }  // namespace
@@ -126,7 +127,8 @@ void PublishedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking) {
     CentreOn(estimate_.X_CM->translation());
   } else if (estimate_.status == TrackStatus::kLost &&
-             monitor_.frames_in_status() % kRestartAfterLostFrames == kRestartAfterLostFrames - 1) {
+             monitor_.frames_without_head() % kRestartAfterLostFrames ==
+                 kRestartAfterLostFrames - 1) {
     centre_.reset();
     ga_.SetSpace(settings_.space);
     ga_.Restart();

@@ -38,9 +38,10 @@ TrackStatus TrackMonitor::Update(const RigidTransform& X_CM, const Fitness& fitn
   const bool good = inside && steady && IsFoundBy(fitness, has_color);
   good_in_a_row_ = good ? good_in_a_row_ + 1 : 0;
   last_X_CM_ = X_CM;
+  const bool kept = IsKeptBy(fitness, has_color);
+  frames_without_head_ = kept ? 0 : frames_without_head_ + 1;
 
-  const bool on_track =
-      inside && track_X_CM_ && IsNear(X_CM, *track_X_CM_) && IsKeptBy(fitness, has_color);
+  const bool on_track = inside && track_X_CM_ && IsNear(X_CM, *track_X_CM_) && kept;
   if (on_track || good_in_a_row_ >= config_.confirm_frames) {
     track_X_CM_ = X_CM;
     off_track_in_a_row_ = 0;

@@ -68,6 +68,8 @@ class TrackMonitor {
 
   TrackStatus status() const { return status_; }
   int frames_in_status() const { return frames_in_status_; }
+  /// Frames in a row, up to the last, whose fitness would not even keep a head.
+  int frames_without_head() const { return frames_without_head_; }
 
  private:
   bool IsFoundBy(const Fitness& fitness, bool has_color) const;
@@ -80,6 +82,7 @@ class TrackMonitor {
   std::optional<RigidTransform> last_X_CM_;   // of the last frame, good or bad
   std::optional<RigidTransform> track_X_CM_;  // where the track is by the camera's motion
   int good_in_a_row_{0}, off_track_in_a_row_{0}, frames_in_status_{0};
+  int frames_without_head_{0};
 };
 
 }  // namespace visavis

@@ -168,6 +168,15 @@ TEST_F(TrackMonitorTest, CountsTheFramesInAStatus) {
   }
 }
 
+TEST_F(TrackMonitorTest, CountsTheFramesThatWouldNotEvenKeepAHead) {
+  for (int i = 1; i <= 10; ++i) {
+    Update(kBad);
+    EXPECT_EQ(monitor_.frames_without_head(), i);
+  }
+  Update(kWeak);
+  EXPECT_EQ(monitor_.frames_without_head(), 0);
+}
+
 TEST_F(TrackMonitorTest, EveryTermMustReachItsThresholdAtOnce) {
   const Fitness refused[] = {FitnessOf(0.09, 0.9, 0.5), FitnessOf(0.5, 0.49, 0.5),
                              FitnessOf(0.5, 0.9, 0.09), FitnessOf(0.2, 0.55, 0.14)};
