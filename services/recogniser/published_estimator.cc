@@ -15,7 +15,8 @@ Vector6d PhiFromMmDeg(const std::vector<double>& values) {
   return phi;
 }
 
-// A head that stays lost this long is looked for afresh, everywhere.
+// A lost head of which the population shows nothing for so long is looked for afresh, everywhere.
+// While it shows something the population is better than a random one.
 constexpr int kRestartAfterLostFrames = 30;
 
 }  // namespace
@@ -57,6 +58,7 @@ void PublishedEstimator::Reset() {
   const StartConfig& start = settings_.start;
   if (start.phi_mm_deg.empty()) return;
   const Vector6d phi = PhiFromMmDeg(start.phi_mm_deg);
+  monitor_.Expect(TransformFromPhi(phi));
   CentreOn(phi.head<3>());
   Vector6d spread;
   spread << Eigen::Vector3d::Constant(start.spread_mm * 1e-3),
@@ -130,7 +132,8 @@ void PublishedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking) {
     CentreOn(estimate_.X_CM->translation());
   } else if (estimate_.status == TrackStatus::kLost &&
-             monitor_.frames_in_status() % kRestartAfterLostFrames == kRestartAfterLostFrames - 1) {
+             monitor_.frames_without_head() % kRestartAfterLostFrames ==
+                 kRestartAfterLostFrames - 1) {
     centre_.reset();
     ga_.SetSpace(settings_.space);
     ga_.Restart();
@@ -147,7 +150,8 @@ const Estimate& PublishedEstimator::Process(const StereoFrame& frame, const Came
   Evolve(maps);
   timer->Enter(Stage::kOther);
   const PackedMap* map = maps.right ? maps.right : maps.left;
-  estimate_.status = monitor_.Update(*estimate_.X_CM, estimate_.fitness, map->has_color(), step);
+  estimate_.status =
+      monitor_.Update(*estimate_.X_CM, estimate_.fitness, map->has_color(), step, ga_.space());
   FollowHead();
   return estimate_;
 }

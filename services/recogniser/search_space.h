@@ -45,6 +45,11 @@ struct SearchSpace {
   bool Contains(const Vector6d& phi) const {
     return (phi.array() >= min.array()).all() && (phi.array() <= max.array()).all();
   }
+  /// Whether a parameter of @p phi lies outside or within @p share of its range from an end.
+  bool AtBorder(const Vector6d& phi, double share) const {
+    const Vector6d margin = share * range();
+    return !SearchSpace{min + margin, max - margin}.Contains(phi);
+  }
   /// The same extent, its positions centred on @p p_CM [m]; the angles stay.
   SearchSpace CentredOn(const Eigen::Vector3d& p_CM) const;
 };

@@ -33,6 +33,10 @@ inline PublishedEstimator::Settings PublishedTestSettings() {
   track.min_site = 0.1;
   track.min_color = 0.5;
   track.min_feat = 0.1;
+  track.keep_fitness = 0.8;
+  track.keep_color = 0.5;
+  track.keep_feat = 0.1;
+  track.border_share = 0.025;
   track.confirm_frames = 3;
   track.lose_frames = 3;
   track.max_step_mm = 40;

@@ -51,6 +51,16 @@ TEST(SearchSpaceTest, ACustomSpaceIsItsKeys) {
   EXPECT_TRUE(space.range().isApprox(PhiOf(30, 70, 100, 30, 30, 30)));
 }
 
+TEST(SearchSpaceTest, TheBorderIsAShareOfEachRangeAndAllBeyond) {
+  const SearchSpace space = SpaceOf("paper");  // 5 %: 10 mm of t_x, 15 mm of t_z, 2 deg
+  EXPECT_FALSE(space.AtBorder(PhiOf(-89, 89, 916, 17.9, -17.9, 17.9), 0.05));
+  EXPECT_TRUE(space.AtBorder(PhiOf(-91, 0, 1000, 0, 0, 0), 0.05));
+  EXPECT_TRUE(space.AtBorder(PhiOf(0, 0, 1186, 0, 0, 0), 0.05));
+  EXPECT_TRUE(space.AtBorder(PhiOf(0, 0, 1000, 0, 0, -18.1), 0.05));
+  EXPECT_TRUE(space.AtBorder(PhiOf(0, 300, 1000, 0, 0, 0), 0.05));
+  EXPECT_FALSE(space.AtBorder(PhiOf(99.9, 0, 1000, 0, 0, 0), 0));
+}
+
 TEST(SearchSpaceTest, WideFollowsTheHeadPaperDoesNotAndCustomAsItSays) {
   SearchSpaceConfig config;
   for (const bool recentre : {false, true}) {

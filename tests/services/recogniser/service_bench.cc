@@ -26,6 +26,8 @@ RecogniserConfig EasyConfig() {
   config.published.generations_per_frame = 1;
   TrackMonitorConfig& track = config.published.track;
   track.min_fitness = track.min_site = track.min_color = track.min_feat = -1;
+  track.keep_fitness = track.keep_color = track.keep_feat = -1;
+  track.border_share = 0;
   track.confirm_frames = 1;
   track.max_step_mm = 1000;
   track.max_step_deg = 180;
