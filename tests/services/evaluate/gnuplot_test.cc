@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -20,6 +21,14 @@ TEST(GnuplotTest, RunsAScriptAndLeavesNothingButItsOutput) {
   std::getline(file, text);
   EXPECT_EQ(text, "42");
   EXPECT_FALSE(std::filesystem::exists(folder / "script.gp"));
+}
+
+TEST(GnuplotTest, Utf8DrawsNoWarningWhateverTheLocale) {
+  const TemporaryFolder folder;
+  setenv("LC_ALL", "POSIX", 1);
+  ::testing::internal::CaptureStderr();
+  RunGnuplot("set encoding utf8\n", folder / "script.gp");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(GnuplotTest, AScriptThatFailsIsAnError) {
