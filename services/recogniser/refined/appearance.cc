@@ -92,15 +92,15 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
   return fit;
 }
 
-void AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
-               const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations) {
+double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
+                 const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations) {
   Moments m;
   for (std::size_t i = 0; i < face.size(); ++i) {
     if (right.seen[i] && left.seen[i]) {
       m.Add(static_cast<double>(left.value[i]), static_cast<double>(right.value[i]));
     }
   }
-  if (m.n < kFewest) return;
+  if (m.n < kFewest) return 0;
   // left * ratio + offset as the right eye sees it; the ratio from the contrasts, which noise
   // raises alike on both sides.
   const double ratio = std::sqrt((m.var_y() + 1e-9) / (m.var_x() + 1e-9));
@@ -113,6 +113,7 @@ void AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSampl
     equations->Add(right.slope[i] - r * left.slope[i], R_CM * face.points[i], residual,
                    scale / (1 + residual * residual * robust));
   }
+  return m.cov() / std::sqrt(m.var_x() * m.var_y() + 1e-12);
 }
 
 }  // namespace visavis

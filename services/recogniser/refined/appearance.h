@@ -41,7 +41,8 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
                       PoseEquations* equations);
 
 /// Both eyes should see the same brightness at a point of the surface, up to gain and offset.
-void AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
-               const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations);
+/// @return their correlation before the step, -1 to 1; 0 where too few points are seen by both.
+double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
+                 const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations);
 
 }  // namespace visavis

@@ -27,7 +27,18 @@ class BandImages {
   };
   bool At(Band band, float u, float v, Sample* sample) const;
   /// The value alone, at the nearest sample; false outside.
-  bool Nearest(Band band, float u, float v, float* value) const;
+  bool Nearest(Band band, float u, float v, float* value) const {
+    const Plane& plane = bands_[band];
+    const float scale = band == kFineBand ? 0.5f : 0.25f;
+    const float x = (u + 0.5f - static_cast<float>(box_.x0)) * scale;
+    const float y = (v + 0.5f - static_cast<float>(box_.y0)) * scale;
+    if (!(x >= 0 && y >= 0 && x < static_cast<float>(plane.width) &&
+          y < static_cast<float>(plane.height))) {
+      return false;
+    }
+    *value = plane.row(static_cast<int>(y))[static_cast<int>(x)];
+    return true;
+  }
 
  private:
   struct Plane {

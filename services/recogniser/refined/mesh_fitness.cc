@@ -31,11 +31,23 @@ double MeshScore::total() const {
          (has_ncc ? kNccWeight * ncc : 0);
 }
 
-MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face) : face_(face) {
+MeshFitness::Point MeshFitness::MakePoint(const Vector3f& p, const Vector3f& n) {
+  return {p, n, n.dot(p), 0, false};
+}
+
+MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detail) {
+  const auto step = static_cast<std::size_t>(detail);
+  std::size_t inside = 0, outline = 0, pattern = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Vector3f &p = mesh.vertices[i], &n = mesh.normals[i];
-    vertices_.push_back({p, n, n.dot(p), mesh.parts[i] == HeadPart::kHair, mesh.coloured[i] != 0,
-                         mesh.contour_weights[i] > 0});
+    Point point = MakePoint(mesh.vertices[i], mesh.normals[i]);
+    point.hair = mesh.parts[i] == HeadPart::kHair;
+    if (mesh.coloured[i] && inside++ % (2 * step) == 0) inside_.push_back(point);
+    if (mesh.contour_weights[i] > 0 && outline++ % step == 0) outline_.push_back(point);
+  }
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    if (!face.has_generic[i] || pattern++ % (2 * step) != 0) continue;
+    pattern_.push_back(MakePoint(face.points[i], face.normals[i]));
+    pattern_.back().value = face.generic[kCoarseBand][i];
   }
   // Forehead, cheeks, nose, upper lip, chin.
   for (const auto& [x, y] : {std::pair{-0.02f, -0.012f},
@@ -69,71 +81,74 @@ double MeshFitness::GlanceAtSkin(const StereoView& view, const RigidTransform& X
   return count > 0 ? sum / (kScoreUnit * count) : 1;
 }
 
-MeshScore MeshFitness::Evaluate(const StereoView& view, const RigidTransform& X_CM,
-                                const std::vector<float>& pattern,
-                                const std::vector<unsigned char>& usable, int stride) const {
+MeshScore MeshFitness::Evaluate(const StereoView& view, const RigidTransform& X_CM) const {
   MeshScore score;
   int color_eyes = 0, ncc_eyes = 0;
   for (const EyeView& eye : view) {
     if (!eye.seen()) continue;
-    const EyeGeometry& g = *eye.geometry;
-    const EyePose pose(g, X_CM);
-    const float distance = pose.p_ME.norm();
-    if (eye.scores->has_color()) {
-      int in = 0, in_sum = 0, out = 0, out_sum = 0;
-      for (std::size_t i = 0; i < vertices_.size(); i += static_cast<std::size_t>(stride)) {
-        const Vertex& v = vertices_[i];
-        const float away = v.n_dot_p - v.n.dot(pose.p_ME);  // < 0: turned to the eye
-        if (away >= 0) continue;
-        if (v.inside) {
-          const PixelOf at = Project(g, pose.InEye(v.p));
-          const PackedScores s = eye.scores->At(at.u, at.v);
-          in_sum += std::clamp(v.hair ? HairScore(s) : SkinScore(s), -kScoreLimit, kScoreLimit);
-          ++in;
-        }
-        if (v.outline && away > -kGrazing * distance) {
-          for (const float beyond : {0.010f, 0.022f}) {
-            const PixelOf at = Project(g, pose.InEye(v.p + beyond * v.n));
-            out_sum += std::clamp(HeadScore(eye.scores->At(at.u, at.v)), -kScoreLimit, kScoreLimit);
-            ++out;
-          }
-        }
-      }
-      score.inside += static_cast<double>(in_sum) / (kScoreUnit * std::max(in, 1));
-      score.outside += static_cast<double>(out_sum) / (kScoreUnit * std::max(out, 1));
-      ++color_eyes;
-    }
-    int n = 0;
-    float x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    for (std::size_t i = 0; i < face_.size(); i += static_cast<std::size_t>(stride)) {
-      if (!usable[i]) continue;
-      const Vector3f& p = face_.points[i];
-      if (face_.normals[i].dot(p - pose.p_ME) > -0.2f * distance) continue;
-      const PixelOf at = Project(g, pose.InEye(p));
-      float value;
-      if (!eye.bands->Nearest(kCoarseBand, at.u, at.v, &value)) continue;
-      const float t = pattern[i];
-      x += t;
-      y += value;
-      xx += t * t;
-      xy += t * value;
-      yy += value * value;
-      ++n;
-    }
+    const EyePose pose(*eye.geometry, X_CM);
+    score.ncc += Correlation(eye, pose);
     ++ncc_eyes;
-    if (n < kFewestPattern) continue;
-    const float in = 1 / static_cast<float>(n);
-    const float cov = xy - x * y * in, vx = xx - x * x * in, vy = yy - y * y * in;
-    score.ncc += static_cast<double>(cov / std::sqrt(vx * vy + 1e-6f));
+    if (!eye.scores->has_color()) continue;
+    score.inside += Inside(eye, pose);
+    score.outside += Outside(eye, pose);
+    ++color_eyes;
   }
-  if (color_eyes > 0) {
-    score.inside /= color_eyes;
-    score.outside /= color_eyes;
-  }
-  if (ncc_eyes > 0) score.ncc /= ncc_eyes;
   score.has_color = color_eyes > 0;
   score.has_ncc = ncc_eyes > 0;
+  score.inside /= std::max(color_eyes, 1);
+  score.outside /= std::max(color_eyes, 1);
+  score.ncc /= std::max(ncc_eyes, 1);
   return score;
+}
+
+double MeshFitness::Inside(const EyeView& eye, const EyePose& pose) const {
+  int count = 0, sum = 0;
+  for (const Point& point : inside_) {
+    if (point.n_dot_p >= point.n.dot(pose.p_ME)) continue;  // turned away
+    const PixelOf at = Project(*eye.geometry, pose.InEye(point.p));
+    const PackedScores s = eye.scores->At(at.u, at.v);
+    sum += std::clamp(point.hair ? HairScore(s) : SkinScore(s), -kScoreLimit, kScoreLimit);
+    ++count;
+  }
+  return static_cast<double>(sum) / (kScoreUnit * std::max(count, 1));
+}
+
+double MeshFitness::Outside(const EyeView& eye, const EyePose& pose) const {
+  int count = 0, sum = 0;
+  const float grazing = -kGrazing * pose.p_ME.norm();
+  for (const Point& point : outline_) {
+    const float away = point.n_dot_p - point.n.dot(pose.p_ME);  // < 0: turned to the eye
+    if (away >= 0 || away <= grazing) continue;
+    for (const float beyond : {0.010f, 0.022f}) {
+      const PixelOf at = Project(*eye.geometry, pose.InEye(point.p + beyond * point.n));
+      sum += std::clamp(HeadScore(eye.scores->At(at.u, at.v)), -kScoreLimit, kScoreLimit);
+      ++count;
+    }
+  }
+  return static_cast<double>(sum) / (kScoreUnit * std::max(count, 1));
+}
+
+double MeshFitness::Correlation(const EyeView& eye, const EyePose& pose) const {
+  int n = 0;
+  float x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  const float turned = -0.2f * pose.p_ME.norm();
+  for (const Point& point : pattern_) {
+    if (point.n_dot_p - point.n.dot(pose.p_ME) > turned) continue;
+    const PixelOf at = Project(*eye.geometry, pose.InEye(point.p));
+    float value;
+    if (!eye.bands->Nearest(kCoarseBand, at.u, at.v, &value)) continue;
+    x += point.value;
+    y += value;
+    xx += point.value * point.value;
+    xy += point.value * value;
+    yy += value * value;
+    ++n;
+  }
+  if (n < kFewestPattern) return 0;
+  const float in = 1 / static_cast<float>(n);
+  const float cov = xy - x * y * in, vx = xx - x * x * in, vy = yy - y * y * in;
+  return static_cast<double>(cov / std::sqrt(vx * vy + 1e-6f));
 }
 
 }  // namespace visavis

@@ -22,27 +22,30 @@ struct MeshScore {
 /// to 29 in spirit, with learned colours for fixed rules) and the features' pattern.
 class MeshFitness {
  public:
-  MeshFitness(const HeadMesh& mesh, const FacePoints& face);
+  /// @p detail: what share of the mesh's and the face's points is looked at, one in so many.
+  MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detail);
 
-  /// @p pattern and @p usable: of the coarse band at the face points. @p stride: every so many
-  /// points count. No allocation.
-  MeshScore Evaluate(const StereoView& view, const RigidTransform& X_CM,
-                     const std::vector<float>& pattern, const std::vector<unsigned char>& usable,
-                     int stride) const;
+  /// The face's pattern is the generic one's coarse band. No allocation.
+  MeshScore Evaluate(const StereoView& view, const RigidTransform& X_CM) const;
 
   /// A glance at a few places of the face: mean skin score in units of 2 nats. Poses that fail it
   /// need no evaluation. 1 on grey pictures.
   double GlanceAtSkin(const StereoView& view, const RigidTransform& X_CM) const;
 
  private:
-  struct Vertex {
+  struct Point {
     Eigen::Vector3f p, n;
     float n_dot_p;
-    bool hair, inside, outline;
+    float value;  ///< pattern_: the generic face's brightness
+    bool hair;    ///< inside_
   };
-  std::vector<Vertex> vertices_;
+  double Inside(const EyeView& eye, const EyePose& pose) const;
+  double Outside(const EyeView& eye, const EyePose& pose) const;
+  double Correlation(const EyeView& eye, const EyePose& pose) const;
+  static Point MakePoint(const Eigen::Vector3f& p, const Eigen::Vector3f& n);
+
+  std::vector<Point> inside_, outline_, pattern_;
   std::vector<Eigen::Vector3f> skin_;  // a few points
-  const FacePoints& face_;
 };
 
 }  // namespace visavis

@@ -42,7 +42,8 @@ void PoseRefiner::AddContours(const StereoView& view, const std::array<EyePose, 
 }
 
 void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses,
-                                 Band band, double stereo_weight, PoseEquations* equations) {
+                                 Band band, double stereo_weight, PoseEquations* equations,
+                                 Refined* refined) {
   for (std::size_t e = 0; e < 2; ++e) {
     if (!view[e].seen()) continue;
     SampleFace(face_, view[e], poses[e], band, kMinFacing, &samples_[e]);
@@ -50,8 +51,9 @@ void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePos
                kPatternSigma, static_cast<float>(config_.pattern_weight), equations);
   }
   if (view[0].seen() && view[1].seen()) {
-    AddStereo(face_, samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
-              static_cast<float>(stereo_weight), equations);
+    refined->stereo_ncc =
+        AddStereo(face_, samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
+                  static_cast<float>(stereo_weight), equations);
   }
 }
 
@@ -71,8 +73,9 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
   }
   refined->texture_ncc /= std::max(eyes, 1);
   if (eyes == 2 && config_.stereo_weight_with_texture > 0) {
-    AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
-              static_cast<float>(config_.stereo_weight_with_texture), equations);
+    refined->stereo_ncc =
+        AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
+                  static_cast<float>(config_.stereo_weight_with_texture), equations);
   }
 }
 
@@ -81,8 +84,9 @@ PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform&
                                         EyePose(*view[1].geometry, X_CM)};
   PoseEquations equations;
   ContourFit ignored;
+  Refined ignored_too;
   AddContours(view, poses, 6, config_.outline_weight, &equations, &ignored);
-  AddGenericFace(view, poses, kFineBand, 0.5 * config_.stereo_weight, &equations);
+  AddGenericFace(view, poses, kFineBand, 0.5 * config_.stereo_weight, &equations, &ignored_too);
   Matrix6d R = Matrix6d::Zero();
   R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();
   PoseEquations in_head;
@@ -109,7 +113,7 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
       AddTexture(view, poses, band, *texture, &equations, &refined);
     } else {
       AddContours(view, poses, reach, config_.outline_weight, &equations, &refined.contour);
-      AddGenericFace(view, poses, band, config_.stereo_weight, &equations);
+      AddGenericFace(view, poses, band, config_.stereo_weight, &equations, &refined);
     }
     refined.information = equations.Full();
     Vector6d step = refined.information.ldlt().solve(equations.g);

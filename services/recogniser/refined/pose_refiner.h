@@ -35,6 +35,7 @@ struct Refined {
   Matrix6d information{Matrix6d::Zero()};  ///< of [dp; w] in C, from the last step's equations
   ContourFit contour;                      ///< both eyes
   double texture_ncc{0};                   ///< mean of the eyes; 0: not learned
+  double stereo_ncc{0};                    ///< correlation of both eyes' views; 0: one eye
   double last_step_m{0}, last_step_rad{0};
 };
 
@@ -60,7 +61,7 @@ class PoseRefiner {
 
  private:
   void AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
-                      double stereo_weight, PoseEquations* equations);
+                      double stereo_weight, PoseEquations* equations, Refined* refined);
   void AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
                   const FaceTexture& texture, PoseEquations* equations, Refined* refined);
   void AddContours(const StereoView& view, const std::array<EyePose, 2>& poses, int reach_px,

@@ -21,7 +21,7 @@ struct RealGaConfig {
     a->Visit("immigrant_share", &immigrant_share, InRange(0.0, 0.9));
     a->Visit("mutation_probability", &mutation_probability, InRange(0.0, 1.0));
   }
-  int individuals{40};
+  int individuals{30};
   double elite_share{0.2};
   int tournament{3};
   double immigrant_share{0.1};        ///< of the children: new, anywhere in the space

@@ -16,6 +16,7 @@ struct EvidenceConfig {
   template <typename A>
   void Serialize(A* a) {
     a->Visit("lock_ncc", &lock_ncc, InRange(-1.0, 1.0));
+    a->Visit("lock_stereo_ncc", &lock_stereo_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
     a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
     a->Visit("keep_texture_ncc", &keep_texture_ncc, InRange(-1.0, 1.0));
@@ -23,7 +24,8 @@ struct EvidenceConfig {
     a->Visit("confirm_frames", &confirm_frames, InRange(1, 100));
     a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
   }
-  double lock_ncc{0.3};          ///< generic pattern, before TRACKING
+  double lock_ncc{0.2};          ///< generic pattern, before TRACKING
+  double lock_stereo_ncc{0.7};   ///< agreement of both eyes, before TRACKING
   double lock_outside{-0.4};     ///< at most: how much the surroundings look like a head
   double lock_inside{0.4};       ///< at least: how much the inside does
   double keep_texture_ncc{0.6};  ///< learned texture, while TRACKING
@@ -46,7 +48,7 @@ struct RefinedConfig {
     a->Visit("refiner", &refiner);
     a->Visit("evidence", &evidence);
   }
-  int track_evaluations{90};    ///< of the fitness, in a frame with a track
+  int track_evaluations{60};    ///< of the fitness, in a frame with a track
   int search_shots{3000};       ///< poses glanced at, in a frame without
   int search_evaluations{800};  ///< of the fitness by the GA after them
   int search_starts{5};         ///< best distinct individuals that are refined then

@@ -8,11 +8,12 @@ namespace {
 
 constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
 constexpr double kFaceSpacing_m = 0.005;
-constexpr double kBoxRadius_m = 0.19;
+constexpr double kBoxRadius_m = 0.17;
 constexpr double kLeastGlance = -0.3;  ///< below: not worth an evaluation
 constexpr int kLeastBox_px = 32;
 constexpr int kVerifyRounds = 2;
-constexpr std::size_t kVerified = 3;  ///< best places that are verified
+constexpr std::size_t kVerified = 3;     ///< best places that are verified
+constexpr double kClearlyBetter = 0.05;  ///< of a correlation
 constexpr double kTurn_rad = 0.3;
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
 constexpr double kHopeless = -3;                      ///< fitness then
@@ -32,8 +33,8 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadSh
       mesh_(MeshOf(surface_, kMeshLevel)),
       face_(FacePointsOf(surface_, kFaceSpacing_m)),
       pair_(rig, MiddleDistance(settings.space)),
-      coarse_fitness_(MeshOf(surface_, kCoarseMeshLevel), face_),
-      fitness_(mesh_, face_),
+      coarse_fitness_(MeshOf(surface_, kCoarseMeshLevel), face_, 2),
+      fitness_(MeshOf(surface_, kCoarseMeshLevel), face_, 1),
       refiner_(settings.refined.refiner, surface_, mesh_, face_),
       texture_(face_),
       scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
@@ -109,8 +110,7 @@ RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X
                                                          int reach_px) {
   Candidate candidate;
   candidate.refined = refiner_.Refine(view_, X_CM, texture, iterations, reach_px);
-  candidate.score = fitness_.Evaluate(view_, candidate.refined.X_CM, face_.generic[kCoarseBand],
-                                      face_.has_generic, 1);
+  candidate.score = fitness_.Evaluate(view_, candidate.refined.X_CM);
   return candidate;
 }
 
@@ -120,9 +120,7 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   estimate_.evaluations += 1;
   const auto fitness = [&](const Vector6d& phi) {
     ++estimate_.evaluations;
-    return coarse_fitness_
-        .Evaluate(view_, TransformFromPhi(phi), face_.generic[kCoarseBand], face_.has_generic, 2)
-        .total();
+    return coarse_fitness_.Evaluate(view_, TransformFromPhi(phi)).total();
   };
   if (settings_.refined.track_evaluations == 0) return best;
   population_.Evaluate(fitness);
@@ -147,8 +145,7 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     const double glance = coarse_fitness_.GlanceAtSkin(view_, X);
     if (glance < kLeastGlance) return kHopeless + glance;
     ++estimate_.evaluations;
-    return coarse_fitness_.Evaluate(view_, X, face_.generic[kCoarseBand], face_.has_generic, 2)
-        .total();
+    return coarse_fitness_.Evaluate(view_, X).total();
   };
   population_.Evaluate(fitness);
   population_.Shoot(settings_.refined.search_shots, fitness);
@@ -171,6 +168,7 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     if (static_cast<int>(starts.size()) == settings_.refined.search_starts) break;
   }
   candidates_.clear();
+  colors_before_ = colors_;
   const auto consider = [&](const RigidTransform& X) {
     candidates_.push_back(RefineFrom(X, nullptr, iterations, 10));
   };
@@ -178,15 +176,30 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     consider(X);
     consider(MakeTransform(Eigen::Matrix3d::Identity().eval(), X.translation()));
   }
-  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-    return a.score.total() > b.score.total();
-  });
-  return BestVerified();
+  std::sort(candidates_.begin(), candidates_.end(),
+            [](const Candidate& a, const Candidate& b) { return a.merit() > b.merit(); });
+  if (const auto known = KnownAmongCandidates()) return *known;
+  return Recognise(BestVerified());
+}
+
+// Where the learned face is among the places found: the texture knows it better than the generic
+// face does.
+std::optional<RefinedEstimator::Candidate> RefinedEstimator::KnownAmongCandidates() {
+  std::optional<Candidate> best;
+  if (!texture_.learned()) return best;
+  for (const Candidate& candidate : candidates_) {
+    const RigidTransform& X = candidate.refined.X_CM;
+    if (!X.matrix().allFinite() || candidate.score.total() < candidates_[0].score.total() - 1)
+      continue;
+    const Candidate known = RefineFrom(X, &texture_, settings_.refined.search_iterations, 7);
+    if (IsKnownFace(known) && (!best || known.refined.texture_ncc > best->refined.texture_ncc))
+      best = known;
+  }
+  return best;
 }
 
 // Of the best distinct places that which stands the test best; the colours are learned from it.
 RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
-  colors_before_ = colors_;
   std::optional<Candidate> best;
   std::array<RigidTransform, kVerified> places;
   std::size_t tried = 0;
@@ -198,7 +211,7 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
       continue;
     colors_ = colors_before_;
     const Candidate verified = Verify(candidate);
-    if (!best || verified.score.total() > best->score.total()) {
+    if (!best || verified.merit() > best->merit()) {
       best = verified;
       colors_best_ = colors_;
     }
@@ -216,15 +229,18 @@ RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candida
   if (!X.matrix().allFinite()) return candidate;
   BuildMaps(&X);
   Candidate best = candidate;
-  for (const Eigen::Vector3d& turn : {Eigen::Vector3d(kTurn_rad, 0, 0),
-                                      {-kTurn_rad, 0, 0},
-                                      {0, kTurn_rad, 0},
-                                      {0, -kTurn_rad, 0}}) {
-    const Candidate other =
-        RefineFrom(MakeTransform((X.linear() * ExpRotation(turn)).eval(), X.translation()), nullptr,
-                   settings_.refined.search_iterations, 9);
-    if (IsPlausible(other.refined.X_CM) && other.score.total() > best.score.total()) best = other;
+  const auto consider = [&](const Eigen::Matrix3d& R_CM) {
+    const Candidate other = RefineFrom(MakeTransform(R_CM, X.translation()), nullptr,
+                                       settings_.refined.search_iterations, 9);
+    if (IsPlausible(other.refined.X_CM) && other.merit() > best.merit()) best = other;
+  };
+  for (const double turn : {kTurn_rad, -kTurn_rad}) {
+    consider(X.linear() * ExpRotation({turn, 0, 0}));
+    consider(X.linear() * ExpRotation({0, turn, 0}));
   }
+  const Eigen::Vector3d angles = AnglesFromRotation(X.linear());
+  consider(RotationFromAngles({angles[0], -angles[1], angles[2]}));
+  consider(RotationFromAngles({angles[0], angles[1], -angles[2]}));
   return best;
 }
 
@@ -258,7 +274,9 @@ bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
 // What a face must show whoever it is.
 bool RefinedEstimator::IsFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
+  const bool both_eyes = view_[0].seen() && view_[1].seen();
   return IsPlausible(c.refined.X_CM) && c.score.ncc > e.lock_ncc &&
+         (!both_eyes || c.refined.stereo_ncc > e.lock_stereo_ncc) &&
          (!c.score.has_color ||
           (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside));
 }
@@ -268,6 +286,17 @@ bool RefinedEstimator::IsKnownFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
   return IsPlausible(c.refined.X_CM) && texture_.learned() &&
          c.refined.texture_ncc > e.keep_texture_ncc && c.score.ncc > e.keep_ncc;
+}
+
+// A face, but not as learned: it is another one, or the texture was wrong. That is likely where the
+// generic face fits better than it did under the texture.
+bool RefinedEstimator::IsToBeLearnedAnew() {
+  if (!texture_.learned()) return true;
+  ++strange_in_a_row_;
+  const int patience = candidate_.score.ncc > tracked_ncc_ + kClearlyBetter
+                           ? settings_.refined.evidence.strange_frames
+                           : 5 * settings_.refined.evidence.strange_frames;
+  return strange_in_a_row_ >= patience;
 }
 
 void RefinedEstimator::Judge(bool good) {
@@ -379,7 +408,11 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (good) strange_in_a_row_ = 0;
   timer->Enter(Stage::kOther);
   Judge(good);
-  if (good && texture_.learned()) MoveAnchor();
+  if (good) {
+    if (!texture_.learned()) tracked_ncc_ = candidate_.score.ncc;
+    tracked_ncc_ += 0.1 * (candidate_.score.ncc - tracked_ncc_);
+    if (texture_.learned()) MoveAnchor();
+  }
   X_CM_ = candidate_.refined.X_CM;
   estimate_.X_CM = X_CM_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,

@@ -32,6 +32,9 @@ class RefinedEstimator final : public Estimator {
   struct Candidate {
     Refined refined;
     MeshScore score;  ///< against the generic pattern
+
+    /// What decides between candidates: the fitness, and how far both eyes agree on the surface.
+    double merit() const { return score.total() + refined.stereo_ncc; }
   };
   const Candidate& last() const { return candidate_; }
 
@@ -45,6 +48,7 @@ class RefinedEstimator final : public Estimator {
                        int reach_px);
   Candidate Track();
   Candidate Search();
+  std::optional<Candidate> KnownAmongCandidates();
   Candidate BestVerified();
   Candidate TryTurned(const Candidate& candidate);
   /// What remains of @p candidate when the colours are learned from it: of a head more than before,
@@ -55,6 +59,7 @@ class RefinedEstimator final : public Estimator {
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
   bool IsKnownFace(const Candidate& candidate) const;
+  bool IsToBeLearnedAnew();
   void Judge(bool good);
   void Learn();
   void LearnColors(const RigidTransform& X_CM);
@@ -81,6 +86,7 @@ class RefinedEstimator final : public Estimator {
   std::vector<Candidate> candidates_;
   Estimate estimate_;
   std::int64_t frames_{0}, total_generations_{0};
+  double tracked_ncc_{0};  ///< of the generic face, mean over the last good frames
   int good_in_a_row_{0}, bad_in_a_row_{0}, strange_in_a_row_{0};
 };
 
