@@ -93,7 +93,8 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
 }
 
 double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
-                 const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations) {
+                 const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
+                 PoseEquations* equations) {
   Moments m;
   for (std::size_t i = 0; i < face.size(); ++i) {
     if (right.seen[i] && left.seen[i]) {
@@ -106,6 +107,8 @@ double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSam
   const double ratio = std::sqrt((m.var_y() + 1e-9) / (m.var_x() + 1e-9));
   const auto r = static_cast<float>(ratio);
   const auto o = static_cast<float>((m.y - ratio * m.x) / m.n);
+  const float contrast = static_cast<float>(std::sqrt(m.var_y() / m.n));
+  const float sigma = relative_sigma * contrast + kNoise;
   const float scale = weight / (sigma * sigma), robust = 1 / (4 * sigma * sigma);
   for (std::size_t i = 0; i < face.size(); ++i) {
     if (!right.seen[i] || !left.seen[i]) continue;

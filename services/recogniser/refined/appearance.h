@@ -40,9 +40,11 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
                       const std::vector<unsigned char>& usable, float relative_sigma, float weight,
                       PoseEquations* equations);
 
-/// Both eyes should see the same brightness at a point of the surface, up to gain and offset.
-/// @return their correlation before the step, -1 to 1; 0 where too few points are seen by both.
+/// Both eyes should see the same brightness at a point of the surface, up to gain and offset;
+/// @p relative_sigma: expected difference, in units of the face's own contrast. @return their
+/// correlation before the step, -1 to 1; 0 where too few points are seen by both.
 double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
-                 const Eigen::Matrix3f& R_CM, float sigma, float weight, PoseEquations* equations);
+                 const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
+                 PoseEquations* equations);
 
 }  // namespace visavis

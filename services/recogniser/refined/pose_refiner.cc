@@ -11,7 +11,7 @@ constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
 constexpr double kMaxStep_m = 0.025, kMaxStep_rad = 0.15;
 constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the pattern's own contrast
 constexpr float kMinFacing = 0.3f;
-constexpr float kStereoSigma[kNumBands] = {4, 3};  ///< [levels]
+constexpr float kStereoSigma = 0.35f;  ///< of the face's contrast
 
 }  // namespace
 
@@ -51,9 +51,8 @@ void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePos
                kPatternSigma, static_cast<float>(config_.pattern_weight), equations);
   }
   if (view[0].seen() && view[1].seen()) {
-    refined->stereo_ncc =
-        AddStereo(face_, samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
-                  static_cast<float>(stereo_weight), equations);
+    refined->stereo_ncc = AddStereo(face_, samples_[0], samples_[1], poses[0].R_CM, kStereoSigma,
+                                    static_cast<float>(stereo_weight), equations);
   }
 }
 
@@ -74,7 +73,7 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
   refined->texture_ncc /= std::max(eyes, 1);
   if (eyes == 2 && config_.stereo_weight_with_texture > 0) {
     refined->stereo_ncc =
-        AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma[band],
+        AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma,
                   static_cast<float>(config_.stereo_weight_with_texture), equations);
   }
 }

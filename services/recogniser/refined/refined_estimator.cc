@@ -12,7 +12,10 @@ constexpr double kBoxRadius_m = 0.17;
 constexpr double kLeastGlance = -0.3;  ///< below: not worth an evaluation
 constexpr int kLeastBox_px = 32;
 constexpr int kVerifyRounds = 2;
-constexpr std::size_t kVerified = 3;     ///< best places that are verified
+constexpr std::size_t kVerified = 3;  ///< best places that are verified
+constexpr int kFirstIterations = 4;   ///< of each start
+constexpr std::size_t kTurnedPlaces = 2;
+constexpr std::size_t kPromising = 6;    ///< starts that are refined to the end
 constexpr double kClearlyBetter = 0.05;  ///< of a correlation
 constexpr double kTurn_rad = 0.3;
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
@@ -155,31 +158,56 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     population_.Reproduce(fitness);
     ++estimate_.generations;
   }
-  // The best distinct places, each as found and looking straight ahead.
-  const int iterations = settings_.refined.search_iterations;
-  std::vector<RigidTransform> starts;
+  colors_before_ = colors_;
+  RefineStarts(DistinctPlaces());
+  if (const auto known = KnownAmongCandidates()) return *known;
+  return Recognise(BestVerified());
+}
+
+std::vector<RigidTransform> RefinedEstimator::DistinctPlaces() const {
+  std::vector<RigidTransform> places;
   for (const Individual& individual : population_.individuals()) {
     const RigidTransform X = TransformFromPhi(individual.phi);
-    const bool is_near = std::any_of(starts.begin(), starts.end(), [&](const RigidTransform& s) {
+    const bool is_near = std::any_of(places.begin(), places.end(), [&](const RigidTransform& s) {
       return (s.translation() - X.translation()).norm() < 0.025 && Angle(s, X) < 0.15;
     });
     if (is_near) continue;
-    starts.push_back(X);
-    if (static_cast<int>(starts.size()) == settings_.refined.search_starts) break;
+    places.push_back(X);
+    if (static_cast<int>(places.size()) == settings_.refined.search_starts) break;
   }
+  return places;
+}
+
+// Each place as found and looking straight ahead, the best ones turned in all directions too: a few
+// steps for all of them, the rest for the most promising.
+void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
   candidates_.clear();
-  colors_before_ = colors_;
-  const auto consider = [&](const RigidTransform& X) {
-    candidates_.push_back(RefineFrom(X, nullptr, iterations, 10));
+  const auto by_merit = [](const Candidate& a, const Candidate& b) {
+    return a.merit() > b.merit();
   };
-  for (const RigidTransform& X : starts) {
-    consider(X);
-    consider(MakeTransform(Eigen::Matrix3d::Identity().eval(), X.translation()));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto consider = [&](const Eigen::Matrix3d& R_CM) {
+      const RigidTransform X = MakeTransform(R_CM, places[i].translation());
+      candidates_.push_back(RefineFrom(X, nullptr, kFirstIterations, 10));
+    };
+    consider(places[i].linear());
+    consider(Eigen::Matrix3d::Identity());
+    if (i >= kTurnedPlaces) continue;
+    for (const double turn : {kTurn_rad, -kTurn_rad}) {
+      consider(RotationFromAngles({0, turn, 0}));
+      consider(RotationFromAngles({0, 0, turn}));
+      consider(RotationFromAngles({0, turn, turn}));
+      consider(RotationFromAngles({0, turn, -turn}));
+    }
   }
-  std::sort(candidates_.begin(), candidates_.end(),
-            [](const Candidate& a, const Candidate& b) { return a.merit() > b.merit(); });
-  if (const auto known = KnownAmongCandidates()) return *known;
-  return Recognise(BestVerified());
+  std::sort(candidates_.begin(), candidates_.end(), by_merit);
+  candidates_.resize(std::min(candidates_.size(), kPromising));
+  for (Candidate& candidate : candidates_) {
+    const RigidTransform& X = candidate.refined.X_CM;
+    if (X.matrix().allFinite())
+      candidate = RefineFrom(X, nullptr, settings_.refined.search_iterations, 8);
+  }
+  std::sort(candidates_.begin(), candidates_.end(), by_merit);
 }
 
 // Where the learned face is among the places found: the texture knows it better than the generic
@@ -274,9 +302,8 @@ bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
 // What a face must show whoever it is.
 bool RefinedEstimator::IsFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  const bool both_eyes = view_[0].seen() && view_[1].seen();
   return IsPlausible(c.refined.X_CM) && c.score.ncc > e.lock_ncc &&
-         (!both_eyes || c.refined.stereo_ncc > e.lock_stereo_ncc) &&
+         (!BothEyes() || c.refined.stereo_ncc > e.lock_stereo_ncc) &&
          (!c.score.has_color ||
           (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside));
 }
@@ -285,7 +312,8 @@ bool RefinedEstimator::IsFace(const Candidate& c) const {
 bool RefinedEstimator::IsKnownFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
   return IsPlausible(c.refined.X_CM) && texture_.learned() &&
-         c.refined.texture_ncc > e.keep_texture_ncc && c.score.ncc > e.keep_ncc;
+         c.refined.texture_ncc > e.keep_texture_ncc && c.score.ncc > e.keep_ncc &&
+         (!BothEyes() || c.refined.stereo_ncc > e.keep_stereo_ncc);
 }
 
 // A face, but not as learned: it is another one, or the texture was wrong. That is likely where the

@@ -48,6 +48,8 @@ class RefinedEstimator final : public Estimator {
                        int reach_px);
   Candidate Track();
   Candidate Search();
+  std::vector<RigidTransform> DistinctPlaces() const;
+  void RefineStarts(const std::vector<RigidTransform>& places);
   std::optional<Candidate> KnownAmongCandidates();
   Candidate BestVerified();
   Candidate TryTurned(const Candidate& candidate);
@@ -56,6 +58,7 @@ class RefinedEstimator final : public Estimator {
   Candidate Verify(const Candidate& candidate);
   /// The learned texture's view of a pose that the generic face found.
   Candidate Recognise(const Candidate& candidate);
+  bool BothEyes() const { return view_[0].seen() && view_[1].seen(); }
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
   bool IsKnownFace(const Candidate& candidate) const;
