@@ -62,7 +62,7 @@ struct RecogniserConfig {
   visavis::RefinedSettings RefinedSettings() const;
 
   /// published: the paper's method. refined: the same idea taken further.
-  std::string estimator{"published"};
+  std::string estimator{"refined"};
   std::string feedforward{"exact"};
   /// Where the camera's motion comes from. auto: the arm where the rig has one and its states come,
   /// else camera poses where they come, else none.

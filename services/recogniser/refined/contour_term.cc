@@ -35,7 +35,7 @@ void ContourTerm::FindSilhouette(const EyePose& pose) {
     facing_[i] = n_dot_p_[i] - mesh_.normals[i].dot(pose.p_ME);
   }
   for (Candidate& c : silhouette_) c.distance = -1;
-  const Vector3f middle = pose.InEye({0, 0.015f, -0.005f});
+  const Vector3f middle = pose.InEye({0, 0.008f, 0});
   const float u0 = middle.x() / middle.z(), v0 = middle.y() / middle.z();
   for (const auto& [ia, ib] : mesh_.edges) {
     const auto a = static_cast<std::size_t>(ia), b = static_cast<std::size_t>(ib);

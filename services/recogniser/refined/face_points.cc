@@ -117,7 +117,7 @@ FacePoints FacePointsOf(const HeadSurface& surface, double spacing_m) {
   const Drawing drawing = GenericFace(surface.shape());
   const std::array<Drawing, 4> blurred = {drawing.Blurred(1.9f), drawing.Blurred(7.5f),
                                           drawing.Blurred(4.0f), drawing.Blurred(14.0f)};
-  for (float y = -0.030f; y <= 0.116f; y += step) {
+  for (float y = -0.037f; y <= 0.109f; y += step) {
     float azimuth = 0;
     for (int column = 0; azimuth < 1.35f; ++column) {
       const Vector3f right = PointAt(surface, y, azimuth);
@@ -126,7 +126,7 @@ FacePoints FacePointsOf(const HeadSurface& surface, double spacing_m) {
         const Vector3f p(side * right.x(), right.y(), right.z());
         const Vector3f n = surface.NormalAt(p);
         if (surface.HairSide(p) > -0.009f || n.z() > -0.05f) continue;
-        const bool front = n.z() < -0.55f && p.z() < -0.035f && std::abs(p.x()) < 0.056f;
+        const bool front = n.z() < -0.55f && p.z() < -0.030f && std::abs(p.x()) < 0.056f;
         face.points.push_back(p);
         face.normals.push_back(n);
         face.generic[kFineBand].push_back(front ? blurred[0].At(p) - blurred[1].At(p) : 0);

@@ -47,7 +47,7 @@ void Subdivide(HeadMesh* mesh) {
 }
 
 bool IsFeature(const HeadShape& s, const Vector3f& p) {
-  if (p.z() > -0.050f) return false;
+  if (p.z() > -0.045f) return false;
   const float x = std::abs(p.x()), y = p.y();
   const bool eyes_and_brows =
       x > 0.011f && x < 0.055f && y > s.brow_y - 0.0065f && y < s.eye_y + 0.008f;
@@ -57,10 +57,10 @@ bool IsFeature(const HeadShape& s, const Vector3f& p) {
 }
 
 float ContourWeight(const Vector3f& p, HeadPart part) {
-  const bool below_jaw = p.y() > 0.078f;
-  const bool nape = p.y() > 0.050f && p.z() > 0.015f;
-  const bool ear = p.y() > -0.014f && p.y() < 0.054f && p.z() > -0.028f && p.z() < 0.032f;
-  const bool long_hair = part == HeadPart::kHair && p.y() > 0.030f;
+  const bool below_jaw = p.y() > 0.071f;
+  const bool nape = p.y() > 0.043f && p.z() > 0.020f;
+  const bool ear = p.y() > -0.021f && p.y() < 0.047f && p.z() > -0.023f && p.z() < 0.037f;
+  const bool long_hair = part == HeadPart::kHair && p.y() > 0.023f;
   return below_jaw || nape || ear || long_hair ? 0.0f : 1.0f;
 }
 
@@ -93,7 +93,7 @@ HeadMesh MeshOf(const HeadSurface& surface, int level) {
     mesh.contour_weights.push_back(ContourWeight(p, part));
     if (part == HeadPart::kSkin && IsFeature(surface.shape(), p)) part = HeadPart::kFeature;
     mesh.parts.push_back(part);
-    const bool chin = p.y() > 0.105f || (p.y() > 0.050f && p.z() > -0.010f);
+    const bool chin = p.y() > 0.098f || (p.y() > 0.043f && p.z() > -0.005f);
     const bool near_hairline = std::abs(surface.HairSide(p)) < 0.006f;
     mesh.coloured.push_back(part != HeadPart::kFeature && !chin && !near_hairline);
   }

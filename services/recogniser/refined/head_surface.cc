@@ -48,7 +48,7 @@ float HeadSurface::Radius(const Vector3f& direction) const {
   const Vector3f p = r * direction;
   const float up = std::max(-direction.y(), 0.0f), behind = std::max(direction.z(), 0.0f);
   r += s.hair * (1 + 0.6f * up + 0.4f * behind) * SmoothStep(-0.006f, 0.018f, HairSide(p));
-  if (p.z() >= 0) return r;
+  if (p.z() >= 0.005f) return r;
   const float tip_y = s.nostril_y - 0.012f;
   const float along = (p.y() - s.eye_y) / (tip_y - s.eye_y);
   const float ridge = along < 0   ? 0

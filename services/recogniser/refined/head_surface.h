@@ -7,21 +7,21 @@ namespace visavis {
 /// An adult head as an analytic surface, star-shaped about M's origin: a cranium and a face, each a
 /// superellipsoid |x/a|^e + |y/b|^e + |z/c|^e = 1, joined smoothly; nose, eye sockets, hair on top.
 /// All in the M frame (x to the subject's left as the camera sees right, y down, z to the rear), m.
-/// Means of adult anthropometry.
+/// Means of adult anthropometry; the origin lies halfway between vertex and chin.
 struct HeadShape {
   Eigen::Vector3f cranium{0.074f, 0.088f, 0.097f};  ///< semi-axes
-  Eigen::Vector3f cranium_centre{0, 0, 0.003f};
+  Eigen::Vector3f cranium_centre{0, -0.007f, 0.008f};
   Eigen::Vector3f face{0.064f, 0.089f, 0.062f};
-  Eigen::Vector3f face_centre{0, 0.042f, -0.032f};
+  Eigen::Vector3f face_centre{0, 0.035f, -0.027f};
   float cranium_exponent{2.1f}, face_exponent{2.3f};
   float nose{0.020f};                  ///< how far the tip stands out
   float hair{0.005f};                  ///< thickness; more on top and behind
   float hair_tilt_rad{0.5935f};        ///< of the plane between hair and skin, back from horizontal
-  float hair_offset{-0.037f};          ///< of that plane along its normal
-  float eye_y{0.020f}, eye_x{0.031f};  ///< pupils
-  float brow_y{0.0105f};
-  float nostril_y{0.066f};
-  float mouth_y{0.089f};
+  float hair_offset{-0.029f};          ///< of that plane along its normal
+  float eye_y{0.013f}, eye_x{0.031f};  ///< pupils
+  float brow_y{0.0035f};
+  float nostril_y{0.059f};
+  float mouth_y{0.082f};
 };
 
 class HeadSurface {

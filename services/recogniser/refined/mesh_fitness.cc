@@ -50,16 +50,16 @@ MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detai
     pattern_.back().value = face.generic[kCoarseBand][i];
   }
   // Forehead, cheeks, nose, upper lip, chin.
-  for (const auto& [x, y] : {std::pair{-0.02f, -0.012f},
-                             {0.02f, -0.012f},
-                             {-0.035f, 0.045f},
-                             {0.035f, 0.045f},
-                             {0.0f, 0.045f},
-                             {0.0f, 0.075f},
-                             {-0.03f, 0.08f},
-                             {0.03f, 0.08f},
-                             {0.0f, 0.103f}}) {
-    const Vector3f wanted(x, y, -0.09f);
+  for (const auto& [x, y] : {std::pair{-0.02f, -0.019f},
+                             {0.02f, -0.019f},
+                             {-0.035f, 0.038f},
+                             {0.035f, 0.038f},
+                             {0.0f, 0.038f},
+                             {0.0f, 0.068f},
+                             {-0.03f, 0.073f},
+                             {0.03f, 0.073f},
+                             {0.0f, 0.096f}}) {
+    const Vector3f wanted(x, y, -0.085f);
     skin_.push_back(std::min_element(
         mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector3f& a, const Vector3f& b) {
           return (a - wanted).squaredNorm() < (b - wanted).squaredNorm();

@@ -21,10 +21,10 @@ struct RefinerConfig {
     a->Visit("stereo_weight_with_texture", &stereo_weight_with_texture, InRange(0.0, 10.0));
   }
   double outline_weight{1};
-  double outline_weight_with_texture{0.4};
+  double outline_weight_with_texture{0.5};
   double hairline_weight{0.15};  ///< relative to the outline's
-  double pattern_weight{0.4};    ///< generic face
-  double texture_weight{1};
+  double pattern_weight{0.8};    ///< generic face
+  double texture_weight{0.5};
   double stereo_weight{1};
   double stereo_weight_with_texture{1};
 };

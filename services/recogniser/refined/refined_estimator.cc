@@ -9,21 +9,10 @@ namespace {
 constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
 constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
-constexpr double kLeastGlance = -0.3;  ///< below: not worth an evaluation
 constexpr int kLeastBox_px = 32;
-constexpr int kVerifyRounds = 2;
-constexpr std::size_t kVerified = 3;  ///< best places that are verified
-constexpr int kFirstIterations = 4;   ///< of each start
-constexpr std::size_t kTurnedPlaces = 2;
-constexpr std::size_t kPromising = 6;    ///< starts that are refined to the end
-constexpr double kClearlyBetter = 0.05;  ///< of a correlation
-constexpr double kTurn_rad = 0.3;
+constexpr int kStayFrames = 15;                       ///< the space stays where the head was lost
+constexpr double kClearlyBetter = 0.05;               ///< of a correlation
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
-constexpr double kHopeless = -3;                      ///< fitness then
-
-double Angle(const RigidTransform& a, const RigidTransform& b) {
-  return LogRotation(a.linear().transpose() * b.linear()).norm();
-}
 
 double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + space.max[2]); }
 
@@ -51,6 +40,7 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadSh
 void RefinedEstimator::Reset() {
   ForgetFace();
   for (ColorModel& colors : colors_) colors.Reset();
+  centre_.reset();
   population_.SetSpace(settings_.space);
   population_.Restart();
   X_CM_ = settings_.start_X_CM;
@@ -67,7 +57,14 @@ void RefinedEstimator::ForgetFace() {
 
 void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
   settings_.space = space;
+  centre_.reset();
   population_.SetSpace(space);
+}
+
+void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
+  if (!settings_.recentre) return;
+  centre_ = p_CM;
+  population_.SetSpace(settings_.space.CentredOn(p_CM));
 }
 
 void RefinedEstimator::TakePictures(const StereoFrame& frame) {
@@ -102,6 +99,7 @@ void RefinedEstimator::Feedforward(const CameraStep& step) {
                : EulerStep(*phi, step.X_WC1.linear(), step.twist_1, step.dt_s);
   };
   population_.Move(move);
+  if (centre_) CentreOn(step.X_C2C1 * *centre_);
   if (!X_CM_) return;
   Vector6d phi = PhiFromTransform(*X_CM_);
   move(&phi);
@@ -142,158 +140,10 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   return best;
 }
 
-RefinedEstimator::Candidate RefinedEstimator::Search() {
-  const auto fitness = [&](const Vector6d& phi) {
-    const RigidTransform X = TransformFromPhi(phi);
-    const double glance = coarse_fitness_.GlanceAtSkin(view_, X);
-    if (glance < kLeastGlance) return kHopeless + glance;
-    ++estimate_.evaluations;
-    return coarse_fitness_.Evaluate(view_, X).total();
-  };
-  population_.Evaluate(fitness);
-  population_.Shoot(settings_.refined.search_shots, fitness);
-  const int until = estimate_.evaluations + settings_.refined.search_evaluations;
-  const int most = estimate_.generations + settings_.refined.search_evaluations / 10;
-  while (estimate_.evaluations < until && estimate_.generations < most) {
-    population_.Reproduce(fitness);
-    ++estimate_.generations;
-  }
-  colors_before_ = colors_;
-  RefineStarts(DistinctPlaces());
-  if (const auto known = KnownAmongCandidates()) return *known;
-  return Recognise(BestVerified());
-}
-
-std::vector<RigidTransform> RefinedEstimator::DistinctPlaces() const {
-  std::vector<RigidTransform> places;
-  for (const Individual& individual : population_.individuals()) {
-    const RigidTransform X = TransformFromPhi(individual.phi);
-    const bool is_near = std::any_of(places.begin(), places.end(), [&](const RigidTransform& s) {
-      return (s.translation() - X.translation()).norm() < 0.025 && Angle(s, X) < 0.15;
-    });
-    if (is_near) continue;
-    places.push_back(X);
-    if (static_cast<int>(places.size()) == settings_.refined.search_starts) break;
-  }
-  return places;
-}
-
-// Each place as found and looking straight ahead, the best ones turned in all directions too: a few
-// steps for all of them, the rest for the most promising.
-void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
-  candidates_.clear();
-  const auto by_merit = [](const Candidate& a, const Candidate& b) {
-    return a.merit() > b.merit();
-  };
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto consider = [&](const Eigen::Matrix3d& R_CM) {
-      const RigidTransform X = MakeTransform(R_CM, places[i].translation());
-      candidates_.push_back(RefineFrom(X, nullptr, kFirstIterations, 10));
-    };
-    consider(places[i].linear());
-    consider(Eigen::Matrix3d::Identity());
-    if (i >= kTurnedPlaces) continue;
-    for (const double turn : {kTurn_rad, -kTurn_rad}) {
-      consider(RotationFromAngles({0, turn, 0}));
-      consider(RotationFromAngles({0, 0, turn}));
-      consider(RotationFromAngles({0, turn, turn}));
-      consider(RotationFromAngles({0, turn, -turn}));
-    }
-  }
-  std::sort(candidates_.begin(), candidates_.end(), by_merit);
-  candidates_.resize(std::min(candidates_.size(), kPromising));
-  for (Candidate& candidate : candidates_) {
-    const RigidTransform& X = candidate.refined.X_CM;
-    if (X.matrix().allFinite())
-      candidate = RefineFrom(X, nullptr, settings_.refined.search_iterations, 8);
-  }
-  std::sort(candidates_.begin(), candidates_.end(), by_merit);
-}
-
-// Where the learned face is among the places found: the texture knows it better than the generic
-// face does.
-std::optional<RefinedEstimator::Candidate> RefinedEstimator::KnownAmongCandidates() {
-  std::optional<Candidate> best;
-  if (!texture_.learned()) return best;
-  for (const Candidate& candidate : candidates_) {
-    const RigidTransform& X = candidate.refined.X_CM;
-    if (!X.matrix().allFinite() || candidate.score.total() < candidates_[0].score.total() - 1)
-      continue;
-    const Candidate known = RefineFrom(X, &texture_, settings_.refined.search_iterations, 7);
-    if (IsKnownFace(known) && (!best || known.refined.texture_ncc > best->refined.texture_ncc))
-      best = known;
-  }
-  return best;
-}
-
-// Of the best distinct places that which stands the test best; the colours are learned from it.
-RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
-  std::optional<Candidate> best;
-  std::array<RigidTransform, kVerified> places;
-  std::size_t tried = 0;
-  for (const Candidate& candidate : candidates_) {
-    const RigidTransform& X = candidate.refined.X_CM;
-    if (std::any_of(places.begin(), places.begin() + tried, [&](const RigidTransform& other) {
-          return (other.translation() - X.translation()).norm() < 0.02 && Angle(other, X) < 0.15;
-        }))
-      continue;
-    colors_ = colors_before_;
-    const Candidate verified = Verify(candidate);
-    if (!best || verified.merit() > best->merit()) {
-      best = verified;
-      colors_best_ = colors_;
-    }
-    places[tried++] = X;
-    if (tried == kVerified) break;
-  }
-  colors_ = colors_best_;
-  return TryTurned(*best);
-}
-
-// A face seen askew may have been fitted upside down into its own features: turned starts with the
-// colours that are now known tell.
-RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candidate) {
-  const RigidTransform X = candidate.refined.X_CM;
-  if (!X.matrix().allFinite()) return candidate;
-  BuildMaps(&X);
-  Candidate best = candidate;
-  const auto consider = [&](const Eigen::Matrix3d& R_CM) {
-    const Candidate other = RefineFrom(MakeTransform(R_CM, X.translation()), nullptr,
-                                       settings_.refined.search_iterations, 9);
-    if (IsPlausible(other.refined.X_CM) && other.merit() > best.merit()) best = other;
-  };
-  for (const double turn : {kTurn_rad, -kTurn_rad}) {
-    consider(X.linear() * ExpRotation({turn, 0, 0}));
-    consider(X.linear() * ExpRotation({0, turn, 0}));
-  }
-  const Eigen::Vector3d angles = AnglesFromRotation(X.linear());
-  consider(RotationFromAngles({angles[0], -angles[1], angles[2]}));
-  consider(RotationFromAngles({angles[0], angles[1], -angles[2]}));
-  return best;
-}
-
-RefinedEstimator::Candidate RefinedEstimator::Verify(const Candidate& candidate) {
-  Candidate verified = candidate;
-  for (int round = 0; round < kVerifyRounds; ++round) {
-    if (!verified.refined.X_CM.matrix().allFinite()) return verified;
-    LearnColors(verified.refined.X_CM);
-    BuildMaps(&verified.refined.X_CM);
-    verified = RefineFrom(verified.refined.X_CM, nullptr, settings_.refined.iterations, 7);
-  }
-  return verified;
-}
-
-RefinedEstimator::Candidate RefinedEstimator::Recognise(const Candidate& candidate) {
-  if (!texture_.learned()) return candidate;
-  const Candidate known =
-      RefineFrom(candidate.refined.X_CM, &texture_, settings_.refined.search_iterations, 7);
-  return IsKnownFace(known) ? known : candidate;
-}
-
 bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
   if (!X_CM.matrix().allFinite()) return false;
   const Vector6d phi = PhiFromTransform(X_CM);
-  const SearchSpace& space = settings_.space;
+  const SearchSpace& space = population_.space();
   return ((phi - space.min).tail<3>().array() > -kBeyond_rad).all() &&
          ((space.max - phi).tail<3>().array() > -kBeyond_rad).all() &&
          phi[2] > space.min[2] - kBeyond_m && phi[2] < space.max[2] + kBeyond_m;
@@ -401,6 +251,18 @@ void RefinedEstimator::MoveAnchor() {
   texture_.Move(X_MN.inverse());
 }
 
+// The search space moves with a tracked head; a lost one is looked for where the configuration puts
+// it and round its last place by turns.
+void RefinedEstimator::FollowHead() {
+  if (estimate_.status == TrackStatus::kTracking) {
+    CentreOn(X_CM_->translation());
+  } else if (centre_ && bad_in_a_row_ % 2 == 1) {
+    population_.SetSpace(settings_.space);
+  } else if (centre_) {
+    CentreOn(*centre_);
+  }
+}
+
 const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const CameraStep& step,
                                           StageTimer* timer) {
   timer->Enter(Stage::kFeedforward);
@@ -442,6 +304,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     if (texture_.learned()) MoveAnchor();
   }
   X_CM_ = candidate_.refined.X_CM;
+  FollowHead();
   estimate_.X_CM = X_CM_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};

@@ -40,6 +40,8 @@ class RefinedEstimator final : public Estimator {
 
  private:
   void ForgetFace();
+  void CentreOn(const Eigen::Vector3d& p_CM);
+  void FollowHead();
   void TakePictures(const StereoFrame& frame);
   /// Maps of the whole pictures, or of the part round @p X_CM.
   void BuildMaps(const RigidTransform* X_CM);
@@ -84,7 +86,8 @@ class RefinedEstimator final : public Estimator {
   std::array<std::optional<ImageView>, 2> pictures_;
   StereoView view_;
   RealPopulation population_;
-  std::optional<RigidTransform> X_CM_;  ///< of the last frame, carried to this one
+  std::optional<Eigen::Vector3d> centre_;  ///< of the search space once a head was tracked
+  std::optional<RigidTransform> X_CM_;     ///< of the last frame, carried to this one
   Candidate candidate_;
   std::vector<Candidate> candidates_;
   Estimate estimate_;

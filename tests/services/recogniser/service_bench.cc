@@ -17,6 +17,7 @@ StereoRig TinyRig() {
 
 RecogniserConfig EasyConfig() {
   RecogniserConfig config;
+  config.estimator = "published";  // a tiny picture is enough for it
   config.ga.individuals = 20;
   config.feedforward = "exact";
   config.ego_motion = "auto";
