@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "services/recogniser/refined/head_mesh.h"
@@ -12,6 +13,8 @@ namespace visavis {
 struct ContourFit {
   int count{0};          ///< contour points that measured
   double sum_square{0};  ///< of their distances [px^2], each capped at 25
+
+  double rms_px() const { return count > 0 ? std::sqrt(sum_square / count) : 0; }
 };
 
 /// Silhouette and hairline against the colours along their normals: at each point of the model's

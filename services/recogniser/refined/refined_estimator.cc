@@ -10,7 +10,9 @@ constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
 constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kLeastBox_px = 32;
-constexpr int kStayFrames = 15;                       ///< the space stays where the head was lost
+constexpr int kStayFrames = 15;  ///< the space stays where the head was lost
+constexpr int kPatience = 8;     ///< times as long where the strange face is no better
+constexpr double kClearlyWorse = 0.1;
 constexpr double kClearlyBetter = 0.05;               ///< of a correlation
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
 
@@ -170,10 +172,11 @@ bool RefinedEstimator::IsKnownFace(const Candidate& c) const {
 // generic face fits better than it did under the texture.
 bool RefinedEstimator::IsToBeLearnedAnew() {
   if (!texture_.learned()) return true;
+  if (candidate_.score.ncc < tracked_ncc_ - kClearlyWorse) return false;
   ++strange_in_a_row_;
   const int patience = candidate_.score.ncc > tracked_ncc_ + kClearlyBetter
                            ? settings_.refined.evidence.strange_frames
-                           : 5 * settings_.refined.evidence.strange_frames;
+                           : kPatience * settings_.refined.evidence.strange_frames;
   return strange_in_a_row_ >= patience;
 }
 

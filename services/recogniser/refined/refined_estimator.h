@@ -33,8 +33,11 @@ class RefinedEstimator final : public Estimator {
     Refined refined;
     MeshScore score;  ///< against the generic pattern
 
-    /// What decides between candidates: the fitness, and how far both eyes agree on the surface.
-    double merit() const { return score.total() + refined.stereo_ncc; }
+    /// What decides between candidates: the fitness, how far both eyes agree on the surface, and
+    /// how well the contours lie.
+    double merit() const {
+      return score.total() + 2 * refined.stereo_ncc - 0.2 * refined.contour.rms_px();
+    }
   };
   const Candidate& last() const { return candidate_; }
 
