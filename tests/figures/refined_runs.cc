@@ -1,0 +1,138 @@
+// Runs the refined estimator over logs of one subject, from an unknown pose, and prints a line for
+// each. Usage: refined_runs SEED REFERENCE.lcm LOG.lcm ...
+//
+// The reference log serves for nothing but the head offset: where the truth's head frame lies in
+// the model's is a matter of definition, and constant for a subject. Columns: log; frames with the
+// head, TRACKING %, false TRACKING % (of all frames; above 30 mm or 10 deg aligned, or without a
+// head); first lock [frame]; over TRACKING frames after 2 s RMSE mm and deg, aligned by the
+// reference, then by the run itself; median and 99th percentile of the time of a frame [ms].
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/core/clock.h"
+#include "services/recogniser/recogniser_config.h"
+#include "services/recogniser/refined/refined_estimator.h"
+#include "tests/support/log_player.h"
+
+namespace visavis {
+namespace {
+
+constexpr double kSettleS = 2;
+constexpr double kFalseMm = 30, kFalseDeg = 10;
+constexpr double kDeg = 180 / M_PI;
+
+struct Frame {
+  double time_s;
+  bool tracking;
+  RigidTransform X_CM;
+  std::optional<RigidTransform> truth;
+  double ms;
+};
+
+std::vector<Frame> Run(const std::string& log, std::uint64_t seed) {
+  LogPlayer player(log);
+  RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
+  settings.seed = seed;
+  RefinedEstimator estimator(settings, HeadShape{}, player.rig());
+  StageTimer timer(&MonotonicSeconds);
+  std::vector<Frame> frames;
+  std::int64_t start_us = -1;
+  while (const LogPlayer::Pair* pair = player.Next()) {
+    if (start_us < 0) start_us = pair->frame.utime_us;
+    timer.Restart();
+    const Estimate& estimate = estimator.Process(pair->frame, pair->step, &timer);
+    timer.Enter(Stage::kOther);
+    frames.push_back({1e-6 * static_cast<double>(pair->frame.utime_us - start_us),
+                      estimate.status == TrackStatus::kTracking, *estimate.X_CM, pair->truth,
+                      timer.TotalMs()});
+  }
+  if (frames.empty()) throw std::runtime_error(log + ": no pair");
+  return frames;
+}
+
+/// X_MT that makes X_CM X_MT the truth in the mean, over TRACKING frames after @p settle_s.
+RigidTransform OffsetOf(const std::vector<Frame>& frames, double settle_s) {
+  RigidTransform X_MT = RigidTransform::Identity();
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    Eigen::Vector3d p = Eigen::Vector3d::Zero(), r = p;
+    int n = 0;
+    for (const Frame& frame : frames) {
+      if (!frame.tracking || !frame.truth || frame.time_s < settle_s) continue;
+      const RigidTransform rest = (frame.X_CM * X_MT).inverse() * *frame.truth;
+      p += rest.translation();
+      r += LogRotation(rest.linear());
+      ++n;
+    }
+    if (n == 0) break;
+    X_MT = X_MT * MakeTransform(ExpRotation(r / n), Eigen::Vector3d(p / n));
+  }
+  return X_MT;
+}
+
+/// RMSE [mm, deg] over TRACKING frames after the settling time.
+std::pair<double, double> Rmse(const std::vector<Frame>& frames, const RigidTransform& X_MT) {
+  double mm2 = 0, deg2 = 0;
+  int n = 0;
+  for (const Frame& frame : frames) {
+    if (!frame.tracking || !frame.truth || frame.time_s < kSettleS) continue;
+    const auto error = ComputeRecognitionError(*frame.truth, frame.X_CM * X_MT);
+    mm2 += 1e6 * error.position.squaredNorm();
+    deg2 += kDeg * kDeg * error.total_angle * error.total_angle;
+    ++n;
+  }
+  return {std::sqrt(mm2 / std::max(n, 1)), std::sqrt(deg2 / std::max(n, 1))};
+}
+
+bool IsFalse(const Frame& frame, const RigidTransform& X_MT) {
+  if (!frame.tracking) return false;
+  if (!frame.truth) return true;
+  const auto error = ComputeRecognitionError(*frame.truth, frame.X_CM * X_MT);
+  return 1e3 * error.position.norm() > kFalseMm || kDeg * error.total_angle > kFalseDeg;
+}
+
+void PrintRow(const std::string& log, const std::vector<Frame>& frames,
+              const RigidTransform& X_MT) {
+  int with_head = 0, tracking = 0, wrong = 0, first = -1;
+  std::vector<double> ms;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const Frame& frame = frames[i];
+    with_head += frame.truth.has_value();
+    tracking += frame.tracking && frame.truth;
+    wrong += IsFalse(frame, X_MT);
+    if (first < 0 && frame.tracking && !IsFalse(frame, X_MT)) first = static_cast<int>(i);
+    ms.push_back(frame.ms);
+  }
+  std::sort(ms.begin(), ms.end());
+  const auto [mm, deg] = Rmse(frames, X_MT);
+  const auto [self_mm, self_deg] = Rmse(frames, OffsetOf(frames, kSettleS));
+  std::printf("%s %d %.1f %.2f %d %.2f %.2f %.2f %.2f %.2f %.2f\n", log.c_str(), with_head,
+              100.0 * tracking / std::max(with_head, 1),
+              100.0 * wrong / static_cast<double>(frames.size()), first, mm, deg, self_mm, self_deg,
+              ms[ms.size() / 2], ms[ms.size() * 99 / 100]);
+}
+
+}  // namespace
+}  // namespace visavis
+
+int main(int argc, char* argv[]) {
+  if (argc < 4) {
+    std::fputs("usage: refined_runs SEED REFERENCE.lcm LOG.lcm ...\n", stderr);
+    return 2;
+  }
+  try {
+    const auto seed = static_cast<std::uint64_t>(std::max(0, std::atoi(argv[1])));
+    const auto X_MT = visavis::OffsetOf(visavis::Run(argv[2], seed), 0);
+    for (int i = 3; i < argc; ++i) visavis::PrintRow(argv[i], visavis::Run(argv[i], seed), X_MT);
+    return 0;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "refined_runs: %s\n", e.what());
+    return 1;
+  }
+}
