@@ -51,7 +51,7 @@ float HeadSurface::Radius(const Vector3f& direction) const {
   if (p.z() >= 0.005f) return r;
   const float tip_y = s.nostril_y - 0.012f;
   const float along = (p.y() - s.eye_y) / (tip_y - s.eye_y);
-  const float ridge = along < 0   ? 0
+  const float ridge = along < 0   ? 0.2f * s.nose * SmoothStep(s.brow_y, s.eye_y, p.y())
                       : along < 1 ? s.nose * (0.2f + 0.8f * along)
                                   : std::max(0.0f, s.nose * (1 - (p.y() - tip_y) / 0.012f));
   r += ridge * Gaussian(p.x(), 0.007f + 0.1f * std::max(0.0f, p.y() - s.eye_y));
