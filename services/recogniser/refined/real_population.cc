@@ -44,9 +44,14 @@ void RealPopulation::Move(const std::function<void(Vector6d*)>& move) {
   }
 }
 
+// Insertion, which is stable and, unlike std::stable_sort, allocates nothing.
 void RealPopulation::Sort() {
-  std::stable_sort(individuals_.begin(), individuals_.end(),
-                   [](const Individual& a, const Individual& b) { return a.fitness > b.fitness; });
+  for (auto it = individuals_.begin(); it != individuals_.end(); ++it) {
+    const auto place = std::upper_bound(
+        individuals_.begin(), it, *it,
+        [](const Individual& a, const Individual& b) { return a.fitness > b.fitness; });
+    std::rotate(place, it, it + 1);
+  }
 }
 
 int RealPopulation::Evaluate(const FitnessFunction& fitness) {
