@@ -1,0 +1,187 @@
+#include "tests/support/mesh_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace visavis {
+namespace {
+
+using Eigen::Vector3f;
+
+Color Shaded(const Color& color, float factor) {
+  Color shaded;
+  for (std::size_t k = 0; k < 3; ++k) {
+    shaded[k] = static_cast<std::uint8_t>(
+        std::lround(std::clamp(factor * static_cast<float>(color[k]), 0.0f, 255.0f)));
+  }
+  return shaded;
+}
+
+bool InEllipse(float dx, float dy, float a, float b) {
+  return dx * dx / (a * a) + dy * dy / (b * b) < 1;
+}
+
+bool IsDark(const Vector3f& p_M) {
+  const HeadShape& s = SharedAdultHead().surface.shape();
+  if (p_M.z() > -0.035f) return false;
+  const float x = std::abs(p_M.x()), y = p_M.y();
+  return InEllipse(x - s.eye_x, y - s.eye_y, 0.012f, 0.005f) ||
+         InEllipse(x - 0.033f, y - s.brow_y, 0.019f, 0.003f) ||
+         InEllipse(x - 0.007f, y - s.nostril_y, 0.004f, 0.003f) ||
+         InEllipse(x, y - s.mouth_y, 0.024f, 0.003f);
+}
+
+}  // namespace
+
+AdultHead::AdultHead()
+    : surface(HeadShape{}), mesh(MeshOf(surface, 4)), face(FacePointsOf(surface, 0.005)) {}
+
+const AdultHead& SharedAdultHead() {
+  static const AdultHead head;
+  return head;
+}
+
+Color FlatHead(const Vector3f& p_M) {
+  return SharedAdultHead().surface.HairSide(p_M) > 0 ? kSceneHair : kSceneSkin;
+}
+
+Color FeaturedHead(const Vector3f& p_M) {
+  const Color flat = FlatHead(p_M);
+  if (flat == kSceneHair) return flat;
+  return Shaded(flat, IsDark(p_M) ? 0.45f : 1.0f + 0.02f * Grain(p_M));
+}
+
+Color GrainyHead(const Vector3f& p_M) {
+  const Color flat = FlatHead(p_M);
+  return flat == kSceneHair ? flat : Shaded(flat, 0.9f + 0.13f * Grain(p_M));
+}
+
+float Grain(const Vector3f& p_M) {
+  const auto wave = [&](float x, float y, float z, float length_m, float phase) {
+    return std::sin(
+        static_cast<float>(2 * M_PI) / length_m * Vector3f(x, y, z).normalized().dot(p_M) + phase);
+  };
+  return 0.45f * (wave(1, 0.2f, 0.3f, 0.013f, 0.4f) + wave(-0.3f, 1, 0.2f, 0.017f, 1.9f) +
+                  wave(1, 1, -0.4f, 0.021f, 3.0f) + wave(1, -0.8f, 0, 0.012f, 5.2f));
+}
+
+MeshScene::Eye::Eye(const Pinhole& camera, const RigidTransform& X_CE)
+    : geometry(camera, X_CE),
+      scores(camera.width, camera.height),
+      bands(camera.width, camera.height),
+      pixels(static_cast<std::size_t>(camera.width * camera.height)),
+      gray(pixels.size()),
+      classes(pixels.size()),
+      depth(pixels.size()) {}
+
+MeshScene::MeshScene(const StereoRig& rig)
+    : eyes_{Eye(rig.right, RigidTransform::Identity()), Eye(rig.left, rig.X_CL)} {}
+
+ImageView MeshScene::picture(std::size_t eye) const {
+  const Eye& e = eyes_[eye];
+  return {e.pixels.data()->data(), e.geometry.width,    e.geometry.height,
+          3 * e.geometry.width,    3 * e.pixels.size(), PixelFormat::kRgb};
+}
+
+// Pixel by pixel of the triangle's box: barycentric weights, linear in the picture; what they
+// weigh is linear there after division by depth.
+void MeshScene::Fill(const std::array<Vector3f, 3>& corners_M,
+                     const std::array<Vector3f, 3>& corners_E, const Painter& painter, Eye* eye) {
+  const EyeGeometry& g = eye->geometry;
+  Eigen::Matrix3f A;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3f& p = corners_E[static_cast<std::size_t>(k)];
+    A.col(k) << g.cx + g.fx * p.x() / p.z(), g.cy + g.fy * p.y() / p.z(), 1;
+  }
+  const Eigen::Matrix3f to_weights = A.inverse();
+  const Vector3f low = A.rowwise().minCoeff(), high = A.rowwise().maxCoeff();
+  const int x0 = std::max(0, static_cast<int>(std::ceil(low.x())));
+  const int y0 = std::max(0, static_cast<int>(std::ceil(low.y())));
+  const int x1 = std::min(g.width - 1, static_cast<int>(std::floor(high.x())));
+  const int y1 = std::min(g.height - 1, static_cast<int>(std::floor(high.y())));
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const Vector3f weights =
+          to_weights * Vector3f(static_cast<float>(x), static_cast<float>(y), 1);
+      if (weights.minCoeff() < -1e-4f) continue;
+      float inverse_depth = 0;
+      Vector3f p_M = Vector3f::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float share = weights[static_cast<int>(k)] / corners_E[k].z();
+        inverse_depth += share;
+        p_M += share * corners_M[k];
+      }
+      const auto at = static_cast<std::size_t>(y * g.width + x);
+      if (1 / inverse_depth >= eye->depth[at]) continue;
+      eye->depth[at] = 1 / inverse_depth;
+      p_M /= inverse_depth;
+      eye->pixels[at] = painter(p_M);
+      eye->classes[at] = SharedAdultHead().surface.HairSide(p_M) > 0 ? kHairColor : kSkinColor;
+    }
+  }
+}
+
+void MeshScene::Paint(const RigidTransform& X_CM, const Painter& painter, Eye* eye) {
+  const HeadMesh& mesh = SharedAdultHead().mesh;
+  const EyePose pose(eye->geometry, X_CM);
+  std::fill(eye->pixels.begin(), eye->pixels.end(), kSceneWall);
+  std::fill(eye->classes.begin(), eye->classes.end(), kSurroundings);
+  std::fill(eye->depth.begin(), eye->depth.end(), std::numeric_limits<float>::infinity());
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Vector3f, 3> corners_M, corners_E;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners_M[k] = mesh.vertices[static_cast<std::size_t>(triangle[k])];
+      corners_E[k] = pose.InEye(corners_M[k]);
+    }
+    const Vector3f n = (corners_E[1] - corners_E[0]).cross(corners_E[2] - corners_E[0]);
+    if (n.dot(corners_E[0]) < 0) Fill(corners_M, corners_E, painter, eye);
+  }
+}
+
+void MeshScene::LearnColors(const ImageView& picture, Eye* eye) {
+  eye->colors.StartFrom(picture);
+  const auto counts = std::make_unique<ColorModel::Counts>();
+  for (int round = 0; round < 6; ++round) {
+    counts->Clear();
+    for (std::size_t i = 0; i < eye->pixels.size(); ++i) {
+      const auto& [r, g, b] = eye->pixels[i];
+      counts->Add(static_cast<ColorClass>(eye->classes[i]), ColorModel::BinOf(r, g, b));
+    }
+    eye->colors.Learn(counts.get());
+  }
+}
+
+const StereoView& MeshScene::Show(const RigidTransform& X_CM, const Painter& painter) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    Eye& eye = eyes_[i];
+    Paint(X_CM, painter, &eye);
+    LearnColors(picture(i), &eye);
+    const PixelBox whole{0, 0, eye.geometry.width / 16 * 16, eye.geometry.height / 16 * 16};
+    eye.scores.Build(picture(i), eye.colors, whole);
+    eye.bands.Build(picture(i), whole);
+    view_[i] = {&eye.geometry, &eye.scores, &eye.bands};
+  }
+  return view_;
+}
+
+const StereoView& MeshScene::ShowGray(const RigidTransform& X_CM, const Painter& painter) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    Eye& eye = eyes_[i];
+    Paint(X_CM, painter, &eye);
+    std::transform(eye.pixels.begin(), eye.pixels.end(), eye.gray.begin(), [](const Color& c) {
+      return static_cast<std::uint8_t>((77 * c[0] + 150 * c[1] + 29 * c[2] + 128) / 256);
+    });
+    const int width = eye.geometry.width, height = eye.geometry.height;
+    const ImageView picture{eye.gray.data(), width,           height,
+                            width,           eye.gray.size(), PixelFormat::kGray};
+    const PixelBox whole{0, 0, width / 16 * 16, height / 16 * 16};
+    eye.scores.Build(picture, eye.colors, whole);
+    eye.bands.Build(picture, whole);
+    view_[i] = {&eye.geometry, &eye.scores, &eye.bands};
+  }
+  return view_;
+}
+
+}  // namespace visavis
