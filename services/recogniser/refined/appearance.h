@@ -11,9 +11,9 @@ namespace visavis {
 
 /// A band of one eye's picture at every face point under one pose.
 struct FaceSamples {
-  explicit FaceSamples(std::size_t size) : value(size), slope(size), seen(size) {}
+  explicit FaceSamples(std::size_t size) : value(size), facing(size), slope(size), seen(size) {}
 
-  std::vector<float> value;
+  std::vector<float> value, facing;    ///< facing: cosine, 1 where turned straight to the eye
   std::vector<Eigen::Vector3f> slope;  ///< change of value with the point's place in C [1/m]
   std::vector<unsigned char> seen;     ///< in the picture and turned to the eye
 };
@@ -41,8 +41,9 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
                       PoseEquations* equations);
 
 /// Both eyes should see the same brightness at a point of the surface, up to gain and offset;
-/// @p relative_sigma: expected difference, in units of the face's own contrast. @return their
-/// correlation before the step, -1 to 1; 0 where too few points are seen by both.
+/// @p relative_sigma: expected difference, in units of the face's own contrast. Points turned far
+/// aside do not pull: the bands blur what is behind the head into them. @return the correlation of
+/// all points that both see, before the step, -1 to 1; 0 where they are too few.
 double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
                  const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
                  PoseEquations* equations);
