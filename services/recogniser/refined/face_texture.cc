@@ -25,7 +25,7 @@ void FaceTexture::Move(const RigidTransform& X_MN) {
 }
 
 void FaceTexture::Forget() {
-  learned_ = false;
+  learned_ = {};
   points_ = generic_;
   for (auto& w : weight_) std::fill(w.begin(), w.end(), 0.0f);
   std::fill(known_.begin(), known_.end(), static_cast<unsigned char>(0));
@@ -33,7 +33,7 @@ void FaceTexture::Forget() {
 
 void FaceTexture::Learn(Band band, const FaceSamples& samples) {
   float gain = 1, offset = 0;
-  if (learned_) {
+  if (learned_[band]) {
     const GainOffset fit = FitPattern(samples, value_[band], known_);
     if (fit.count < kFewest) return;
     gain = static_cast<float>(std::clamp(fit.gain, kMinGain, kMaxGain));
@@ -47,7 +47,7 @@ void FaceTexture::Learn(Band band, const FaceSamples& samples) {
     weight += 1;
     known_[i] = 1;
   }
-  learned_ = true;
+  learned_[band] = true;
 }
 
 }  // namespace visavis

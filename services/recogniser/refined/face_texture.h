@@ -8,7 +8,8 @@
 namespace visavis {
 
 /// How this face looks, learned from poses that were good: brightness at points in each band, in
-/// the units of the first picture learned from. The points begin on the generic head's surface.
+/// the units of the first picture that the band is learned from. The points begin on the generic
+/// head's surface.
 class FaceTexture {
  public:
   explicit FaceTexture(const FacePoints& face);
@@ -22,7 +23,7 @@ class FaceTexture {
   /// ones less and less.
   void Learn(Band band, const FaceSamples& samples);
 
-  bool learned() const { return learned_; }
+  bool learned() const { return learned_[kFineBand] || learned_[kCoarseBand]; }
   const std::vector<float>& pattern(Band band) const { return value_[band]; }
   /// Points seen often enough to be compared.
   const std::vector<unsigned char>& known() const { return known_; }
@@ -30,7 +31,7 @@ class FaceTexture {
  private:
   const FacePoints& generic_;
   FacePoints points_;
-  bool learned_{false};
+  std::array<bool, kNumBands> learned_{};
   std::array<std::vector<float>, kNumBands> value_, weight_;
   std::vector<unsigned char> known_;
 };
