@@ -10,7 +10,9 @@ constexpr int kHairlinePoints = 33;
 constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
 constexpr double kMaxStep_m = 0.025, kMaxStep_rad = 0.15;
 constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the pattern's own contrast
-constexpr float kMinFacing = 0.3f;
+// Cosine below which a face point is not looked at: the bands blur what is behind the head into
+// those near the outline.
+constexpr float kMinFacing = 0.6f;
 constexpr float kStereoSigma = 0.35f;  ///< of the face's contrast
 
 }  // namespace
@@ -25,7 +27,8 @@ PoseRefiner::PoseRefiner(const RefinerConfig& config, const HeadSurface& surface
 const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
                                        const RigidTransform& X_CM, Band band,
                                        const FacePoints& points) {
-  SampleFace(points, view[eye], EyePose(*view[eye].geometry, X_CM), band, 0.4f, &samples_[eye]);
+  SampleFace(points, view[eye], EyePose(*view[eye].geometry, X_CM), band, kMinFacing,
+             &samples_[eye]);
   return samples_[eye];
 }
 
