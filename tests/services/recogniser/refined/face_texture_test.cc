@@ -1,0 +1,165 @@
+#include "services/recogniser/refined/face_texture.h"
+
+#include <gtest/gtest.h>
+
+#include "common/core/random.h"
+#include "tests/support/mesh_scene.h"
+
+namespace visavis {
+namespace {
+
+const FacePoints& Face() { return SharedAdultHead().face; }
+
+std::vector<float> RandomValues(std::uint64_t seed, double size = 10) {
+  Random random(seed);
+  std::vector<float> values(Face().size());
+  for (float& v : values) v = static_cast<float>(size * random.Normal());
+  return values;
+}
+
+FaceSamples SamplesOf(std::vector<float> values, float gain = 1, float offset = 0) {
+  FaceSamples samples(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    samples.value[i] = gain * values[i] + offset;
+    samples.seen[i] = 1;
+  }
+  return samples;
+}
+
+double LargestDifference(const std::vector<float>& a, const std::vector<float>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, std::abs(static_cast<double>(a[i] - b[i])));
+  return largest;
+}
+
+TEST(FaceTextureTest, BeginsWithTheGenericPointsAndKnowsNothing) {
+  const FaceTexture texture(Face());
+  EXPECT_FALSE(texture.learned());
+  EXPECT_EQ(texture.points().points, Face().points);
+  for (const unsigned char known : texture.known()) EXPECT_FALSE(known);
+}
+
+TEST(FaceTextureTest, TheFirstSightIsTakenAsItIs) {
+  for (const Band band : {kFineBand, kCoarseBand}) {
+    FaceTexture texture(Face());
+    const std::vector<float> face = RandomValues(1);
+    texture.Learn(band, SamplesOf(face));
+    EXPECT_TRUE(texture.learned());
+    EXPECT_LT(LargestDifference(texture.pattern(band), face), 1e-5);
+  }
+}
+
+// Both bands of a pair are learned one after the other: neither counts as a sight of the other.
+TEST(FaceTextureTest, EachBandKeepsTheUnitsOfItsOwnFirstPicture) {
+  FaceTexture texture(Face());
+  const std::vector<float> fine = RandomValues(1), coarse = RandomValues(2, 25);
+  texture.Learn(kFineBand, SamplesOf(fine));
+  texture.Learn(kCoarseBand, SamplesOf(coarse));
+  EXPECT_LT(LargestDifference(texture.pattern(kFineBand), fine), 1e-4);
+  EXPECT_LT(LargestDifference(texture.pattern(kCoarseBand), coarse), 1e-4);
+}
+
+TEST(FaceTextureTest, LearnsTheMean) {
+  FaceTexture texture(Face());
+  const std::vector<float> face = RandomValues(1);
+  constexpr int kSights = 60;
+  for (int k = 0; k < kSights; ++k) {
+    std::vector<float> noisy = RandomValues(100 + static_cast<std::uint64_t>(k), 4);
+    for (std::size_t i = 0; i < face.size(); ++i) noisy[i] += face[i];
+    texture.Learn(kFineBand, SamplesOf(noisy));
+  }
+  const GainOffset fit = FitPattern(SamplesOf(face), texture.pattern(kFineBand), texture.known());
+  // One sight correlates with 10 / sqrt(10^2 + 4^2) = 0.93, the mean of sixty nearly wholly.
+  EXPECT_GT(fit.correlation, 0.995);
+}
+
+TEST(FaceTextureTest, GainAndOffsetOfLaterPicturesDoNotMatter) {
+  FaceTexture texture(Face());
+  const std::vector<float> face = RandomValues(1);
+  texture.Learn(kFineBand, SamplesOf(face));
+  for (const auto& [gain, offset] : {std::pair(2.0f, -30.0f), {0.5f, 20.0f}, {1.0f, 100.0f}}) {
+    texture.Learn(kFineBand, SamplesOf(face, gain, offset));
+    EXPECT_LT(LargestDifference(texture.pattern(kFineBand), face), 1e-3) << gain;
+  }
+}
+
+TEST(FaceTextureTest, LaterSightsCountLessAndLess) {
+  FaceTexture texture(Face());
+  const std::vector<float> face = RandomValues(1);
+  std::vector<float> changed = face;
+  changed[5] += 30;
+  std::vector<double> shifts;
+  for (int k = 0; k < 4; ++k) {
+    FaceTexture copy(Face());
+    for (int i = 0; i <= 4 * k; ++i) copy.Learn(kFineBand, SamplesOf(face));
+    copy.Learn(kFineBand, SamplesOf(changed));
+    shifts.push_back(static_cast<double>(copy.pattern(kFineBand)[5] - face[5]));
+  }
+  EXPECT_NEAR(shifts[0], 15, 1.0);
+  for (std::size_t k = 1; k < shifts.size(); ++k) EXPECT_LT(shifts[k], 0.8 * shifts[k - 1]);
+  EXPECT_GT(shifts.back(), 0.2);  // never frozen
+}
+
+TEST(FaceTextureTest, ANewFaceReplacesTheOldOneInTheEnd) {
+  FaceTexture texture(Face());
+  for (int i = 0; i < 200; ++i) texture.Learn(kFineBand, SamplesOf(RandomValues(1)));
+  std::vector<float> mixed = RandomValues(1);
+  const std::vector<float> other = RandomValues(2);
+  for (std::size_t i = 0; i < mixed.size() / 4; ++i) mixed[i] = other[i];  // a grown beard, say
+  for (int i = 0; i < 1000; ++i) texture.Learn(kFineBand, SamplesOf(mixed));
+  const GainOffset fit = FitPattern(SamplesOf(mixed), texture.pattern(kFineBand), texture.known());
+  EXPECT_GT(fit.correlation, 0.98);
+}
+
+TEST(FaceTextureTest, PointsNotSeenStayUnknown) {
+  FaceTexture texture(Face());
+  FaceSamples half = SamplesOf(RandomValues(1));
+  for (std::size_t i = 0; i < Face().size(); i += 2) half.seen[i] = 0;
+  texture.Learn(kFineBand, half);
+  for (std::size_t i = 0; i < Face().size(); ++i) EXPECT_EQ(texture.known()[i] != 0, i % 2 == 1);
+}
+
+TEST(FaceTextureTest, ASightOfTooFewKnownPointsIsLeftOut) {
+  FaceTexture texture(Face());
+  const std::vector<float> face = RandomValues(1);
+  texture.Learn(kFineBand, SamplesOf(face));
+  FaceSamples few = SamplesOf(RandomValues(2));
+  std::fill(few.seen.begin() + 39, few.seen.end(), static_cast<unsigned char>(0));
+  texture.Learn(kFineBand, few);
+  EXPECT_LT(LargestDifference(texture.pattern(kFineBand), face), 1e-5);
+}
+
+TEST(FaceTextureTest, MoveMovesPointsRigidly) {
+  FaceTexture texture(Face());
+  const RigidTransform X_MN =
+      MakeTransform(ExpRotation({0.1, -0.2, 0.05}), Eigen::Vector3d(0.003, -0.002, 0.004));
+  texture.Move(X_MN);
+  texture.Move(X_MN);
+  const RigidTransform twice = X_MN * X_MN;
+  for (std::size_t i = 0; i < Face().size(); ++i) {
+    const Eigen::Vector3d p = twice * Face().points[i].cast<double>();
+    const Eigen::Vector3d n = twice.linear() * Face().normals[i].cast<double>();
+    EXPECT_LT((texture.points().points[i].cast<double>() - p).norm(), 1e-6);
+    EXPECT_LT((texture.points().normals[i].cast<double>() - n).norm(), 1e-5);
+  }
+}
+
+TEST(FaceTextureTest, ForgetGivesTheGenericPointsBackAndTheNextFaceIsTakenAsItIs) {
+  FaceTexture texture(Face());
+  for (const Band band : {kFineBand, kCoarseBand}) texture.Learn(band, SamplesOf(RandomValues(1)));
+  texture.Move(MakeTransform(ExpRotation({0, 0.1, 0}), Eigen::Vector3d(0.01, 0, 0)));
+  texture.Forget();
+  EXPECT_FALSE(texture.learned());
+  EXPECT_EQ(texture.points().points, Face().points);
+  EXPECT_EQ(texture.points().normals, Face().normals);
+  for (const unsigned char known : texture.known()) EXPECT_FALSE(known);
+  const std::vector<float> other = RandomValues(2);
+  for (const Band band : {kFineBand, kCoarseBand}) {
+    texture.Learn(band, SamplesOf(other));
+    EXPECT_LT(LargestDifference(texture.pattern(band), other), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace visavis

@@ -1,0 +1,170 @@
+#include "services/recogniser/refined/mesh_fitness.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/malloc_counter.h"
+#include "tests/support/mesh_scene.h"
+#include "tests/support/stereo_scene.h"
+
+namespace visavis {
+namespace {
+
+const Vector6d kTruth = PhiOf(20, -10, 1000, 4, -5, 3);
+
+class MeshFitnessTest : public ::testing::Test {
+ protected:
+  MeshFitnessTest()
+      : scene_(TestRig()),
+        fitness_(SharedAdultHead().mesh, SharedAdultHead().face, 1),
+        view_(scene_.Show(TransformFromPhi(kTruth), FeaturedHead)) {}
+
+  MeshScore ScoreAside(const Vector6d& aside) const {
+    return fitness_.Evaluate(view_, TransformFromPhi(kTruth + aside));
+  }
+  double GlanceAside(const Vector6d& aside) const {
+    return fitness_.GlanceAtSkin(view_, TransformFromPhi(kTruth + aside));
+  }
+
+  MeshScene scene_;
+  MeshFitness fitness_;
+  const StereoView& view_;
+};
+
+/// 15 mm aside, 60 mm in depth and 8 deg about each axis, both ways.
+std::vector<Vector6d> Displacements() {
+  std::vector<Vector6d> all;
+  for (const double sign : {-1.0, 1.0}) {
+    for (const Vector6d& aside :
+         {PhiOf(15, 0, 0, 0, 0, 0), PhiOf(0, 15, 0, 0, 0, 0), PhiOf(0, 0, 60, 0, 0, 0),
+          PhiOf(0, 0, 0, 8, 0, 0), PhiOf(0, 0, 0, 0, 8, 0), PhiOf(0, 0, 0, 0, 0, 8)}) {
+      all.push_back(sign * aside);
+    }
+  }
+  return all;
+}
+
+TEST_F(MeshFitnessTest, TheTruePoseBeatsDisplacedOnes) {
+  const double truth = ScoreAside(Vector6d::Zero()).total();
+  for (const Vector6d& aside : Displacements()) {
+    EXPECT_LT(ScoreAside(aside).total(), truth - 0.1) << aside.transpose();
+  }
+}
+
+TEST_F(MeshFitnessTest, OneInThreePointsTellsTheSame) {
+  const MeshFitness coarse(MeshOf(SharedAdultHead().surface, 3), SharedAdultHead().face, 3);
+  const double truth = coarse.Evaluate(view_, TransformFromPhi(kTruth)).total();
+  for (const Vector6d& aside : Displacements()) {
+    EXPECT_LT(coarse.Evaluate(view_, TransformFromPhi(kTruth + aside)).total(), truth);
+  }
+}
+
+TEST_F(MeshFitnessTest, AtTheTruePoseInsideIsAHeadAndOutsideIsNot) {
+  const MeshScore score = ScoreAside(Vector6d::Zero());
+  EXPECT_TRUE(score.has_color);
+  EXPECT_TRUE(score.has_ncc);
+  EXPECT_GT(score.inside, 0.9);
+  EXPECT_LT(score.outside, -0.9);
+  EXPECT_GT(score.ncc, 0.6);
+  EXPECT_LE(score.ncc, 1);
+}
+
+TEST_F(MeshFitnessTest, AsideTheInsideFallsAndTheOutsideRises) {
+  const MeshScore truth = ScoreAside(Vector6d::Zero());
+  for (const double x : {-30.0, 30.0}) {
+    const MeshScore aside = ScoreAside(PhiOf(x, 0, 0, 0, 0, 0));
+    EXPECT_LT(aside.inside, truth.inside - 0.3);
+    EXPECT_GT(aside.outside, truth.outside + 0.3);
+    EXPECT_LT(aside.ncc, truth.ncc - 0.3);
+  }
+}
+
+TEST_F(MeshFitnessTest, OnTheWallNothingIsInside) {
+  const MeshScore wall = ScoreAside(PhiOf(-300, 0, 0, 0, 0, 0));
+  EXPECT_LT(wall.inside, -0.8);
+  EXPECT_LT(std::abs(wall.ncc), 0.3);
+  EXPECT_LT(wall.total(), ScoreAside(Vector6d::Zero()).total() - 1.5);
+}
+
+TEST_F(MeshFitnessTest, AFlatFaceHasTheColoursButNotThePattern) {
+  const MeshScore featured = ScoreAside(Vector6d::Zero());
+  scene_.Show(TransformFromPhi(kTruth), FlatHead);
+  const MeshScore flat = ScoreAside(Vector6d::Zero());
+  EXPECT_GT(flat.inside, 0.9);
+  EXPECT_LT(flat.ncc, featured.ncc - 0.3);
+}
+
+TEST_F(MeshFitnessTest, AGrayPictureIsJudgedByThePatternAlone) {
+  const MeshScore color = ScoreAside(Vector6d::Zero());
+  scene_.ShowGray(TransformFromPhi(kTruth), FeaturedHead);
+  const MeshScore gray = ScoreAside(Vector6d::Zero());
+  EXPECT_FALSE(gray.has_color);
+  EXPECT_TRUE(gray.has_ncc);
+  EXPECT_EQ(gray.inside, 0);
+  EXPECT_EQ(gray.outside, 0);
+  EXPECT_NEAR(gray.ncc, color.ncc, 0.02);
+  EXPECT_NEAR(gray.total(), 1.5 * gray.ncc, 1e-12);
+  EXPECT_LT(ScoreAside(PhiOf(15, 0, 0, 0, 0, 0)).total(), gray.total() - 0.1);
+}
+
+TEST_F(MeshFitnessTest, ScoresAreTheMeanOverTheEyesThatSee) {
+  const StereoView both = view_;
+  StereoView right = view_, left = view_, none = view_;
+  for (StereoView* view : {&left, &none}) (*view)[0].scores = nullptr;
+  for (StereoView* view : {&right, &none}) (*view)[1].scores = nullptr;
+  const RigidTransform X_CM = TransformFromPhi(kTruth + PhiOf(5, 5, 0, 0, 0, 0));
+  const MeshScore r = fitness_.Evaluate(right, X_CM), l = fitness_.Evaluate(left, X_CM);
+  const MeshScore b = fitness_.Evaluate(both, X_CM), n = fitness_.Evaluate(none, X_CM);
+  EXPECT_NE(r.inside, l.inside);
+  EXPECT_NEAR(b.inside, 0.5 * (r.inside + l.inside), 1e-12);
+  EXPECT_NEAR(b.outside, 0.5 * (r.outside + l.outside), 1e-12);
+  EXPECT_NEAR(b.ncc, 0.5 * (r.ncc + l.ncc), 1e-12);
+  EXPECT_FALSE(n.has_color);
+  EXPECT_FALSE(n.has_ncc);
+  EXPECT_EQ(n.total(), 0);
+}
+
+TEST(MeshScoreTest, ColoursRoundTheHeadCountAgainstItDownToALimit) {
+  MeshScore score;
+  score.has_color = true;
+  score.inside = 1;
+  score.outside = 0.5;
+  EXPECT_NEAR(score.total(), 0.25, 1e-12);
+  score.outside = -1;
+  const double least = score.total();
+  score.outside = -1.25;
+  EXPECT_EQ(score.total(), least);
+  score.has_color = false;
+  EXPECT_EQ(score.total(), 0);
+}
+
+TEST_F(MeshFitnessTest, AGlanceIsPositiveOnTheFaceAndNegativeFarFromIt) {
+  EXPECT_GT(GlanceAside(Vector6d::Zero()), 0.8);
+  EXPECT_GT(GlanceAside(PhiOf(15, 10, 40, 5, 5, 5)), 0.5);
+  for (const Vector6d& aside :
+       {PhiOf(-250, 0, 0, 0, 0, 0), PhiOf(200, 0, 0, 0, 0, 0), PhiOf(0, -200, 0, 0, 0, 0)}) {
+    EXPECT_LT(GlanceAside(aside), -0.3) << aside.transpose();
+  }
+}
+
+TEST_F(MeshFitnessTest, AGlanceOutsideOfThePictureTellsNothing) {
+  EXPECT_EQ(GlanceAside(PhiOf(3000, 0, 0, 0, 0, 0)), 0);
+}
+
+TEST_F(MeshFitnessTest, AGlanceAtAGrayPictureLetsEveryPosePass) {
+  scene_.ShowGray(TransformFromPhi(kTruth), FeaturedHead);
+  EXPECT_EQ(GlanceAside(Vector6d::Zero()), 1);
+  EXPECT_EQ(GlanceAside(PhiOf(-250, 0, 0, 0, 0, 0)), 1);
+}
+
+TEST_F(MeshFitnessTest, EvaluatingAllocatesNothing) {
+  if (NumMallocs() < 0) GTEST_SKIP() << "a sanitizer owns the allocator";
+  const RigidTransform X_CM = TransformFromPhi(kTruth);
+  const std::int64_t before = NumMallocs();
+  const MeshScore score = fitness_.Evaluate(view_, X_CM);
+  const double glance = fitness_.GlanceAtSkin(view_, X_CM);
+  EXPECT_EQ(NumMallocs(), before);
+  EXPECT_GT(score.total() + glance, 0);
+}
+
+}  // namespace
+}  // namespace visavis
