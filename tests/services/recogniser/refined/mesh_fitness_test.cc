@@ -85,6 +85,13 @@ TEST_F(MeshFitnessTest, OnTheWallNothingIsInside) {
   EXPECT_LT(wall.total(), ScoreAside(Vector6d::Zero()).total() - 1.5);
 }
 
+TEST_F(MeshFitnessTest, HairWhereSkinIsWantedAndSkinWhereHairIsCountAgainstThePose) {
+  // Upside down and from behind much the same pixels are inside.
+  const double truth = ScoreAside(Vector6d::Zero()).inside;
+  EXPECT_LT(ScoreAside(PhiOf(0, 0, 0, 180, 0, 0)).inside, truth - 0.5);
+  EXPECT_LT(ScoreAside(PhiOf(0, 0, 0, 0, 180, 0)).inside, truth - 0.5);
+}
+
 TEST_F(MeshFitnessTest, AFlatFaceHasTheColoursButNotThePattern) {
   const MeshScore featured = ScoreAside(Vector6d::Zero());
   scene_.Show(TransformFromPhi(kTruth), FlatHead);

@@ -153,10 +153,23 @@ TEST_F(PoseRefinerTest, TheInformationIsSymmetricPositiveAndAtLeastThePriors) {
 }
 
 TEST_F(PoseRefinerTest, AStepIsLimited) {
-  const RigidTransform start = TransformFromPhi(kTruth + PhiOf(40, 40, 100, 20, 20, 20));
-  const Refined refined = refiner_.Refine(view_, start, nullptr, 1, 16);
-  EXPECT_LT((refined.X_CM.translation() - start.translation()).norm(), 0.025 + 1e-9);
-  EXPECT_LT(LogRotation(start.linear().transpose() * refined.X_CM.linear()).norm(), 0.15 + 1e-9);
+  RefinerConfig outline;  // which alone asks for long steps
+  outline.pattern_weight = outline.stereo_weight = 0;
+  PoseRefiner refiner(outline, SharedAdultHead().surface, SharedAdultHead().mesh,
+                      SharedAdultHead().face);
+  double largest_m = 0, largest_rad = 0;
+  for (const Vector6d& aside :
+       {PhiOf(0, 0, 120, 0, 0, 0), PhiOf(0, 0, 0, 25, 0, 0), PhiOf(0, 0, 0, -25, 0, 0),
+        PhiOf(0, 0, 0, 0, 0, -30), PhiOf(0, 0, 0, 0, 0, 30)}) {
+    const RigidTransform start = TransformFromPhi(kTruth + aside);
+    const Refined refined = refiner.Refine(view_, start, nullptr, 1, 16);
+    EXPECT_LT((refined.X_CM.translation() - start.translation()).norm(), 0.025 + 1e-9);
+    EXPECT_LT(LogRotation(start.linear().transpose() * refined.X_CM.linear()).norm(), 0.15 + 1e-9);
+    largest_m = std::max(largest_m, refined.last_step_m);
+    largest_rad = std::max(largest_rad, refined.last_step_rad);
+  }
+  EXPECT_GT(largest_m, 0.026);  // some wanted to go further
+  EXPECT_GT(largest_rad, 0.16);
 }
 
 // X_CM' = X_CM [Exp(w), dp]: the correction brings a displaced frame back.
