@@ -10,11 +10,21 @@ constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
 constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kLeastBox_px = 32;
+constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
 constexpr int kStayFrames = 15;  ///< the space stays where the head was lost
 constexpr int kPatience = 8;     ///< times as long where the strange face is no better
 constexpr double kClearlyWorse = 0.1;
 constexpr double kClearlyBetter = 0.05;               ///< of a correlation
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
+
+/// From the normal equations, and what they cannot know: the head is not shaped as the model. The
+/// head frame's constant offset is a matter of definition and not in it.
+Matrix6d Covariance(const Matrix6d& information) {
+  Matrix6d covariance = information.inverse();
+  covariance.diagonal().head<3>().array() += kShape_m * kShape_m;
+  covariance.diagonal().tail<3>().array() += kShape_rad * kShape_rad;
+  return covariance;
+}
 
 double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + space.max[2]); }
 
@@ -311,7 +321,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   estimate_.X_CM = X_CM_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
-  estimate_.covariance = candidate_.refined.information.inverse();
+  estimate_.covariance = Covariance(candidate_.refined.information);
   total_generations_ += estimate_.generations;
   if (good) Learn();
   ++frames_;
