@@ -33,7 +33,8 @@ class ToolsProcessTest : public ::testing::Test {
   std::string File(const std::string& name) const { return folder_ / name; }
 
   /// Imports, replays and evaluates a recording; the JSON of the evaluation.
-  nlohmann::json Evaluate(const std::string& recording) const {
+  nlohmann::json Evaluate(const std::string& recording,
+                          const std::vector<std::string>& more = {}) const {
     const auto run = [](const std::vector<std::string>& args) {
       const ProcessResult result = RunProcess(args, {}, std::chrono::seconds(50));
       EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -41,11 +42,23 @@ class ToolsProcessTest : public ::testing::Test {
     };
     run({Program("log"), "import", Data(recording), File("in.lcm")});
     run({Program("recogniser"), "--replay", File("in.lcm"), "--record", File("out.lcm")});
-    return nlohmann::json::parse(run({Program("evaluate"), File("out.lcm"), "--json", "-"}));
+    std::vector<std::string> evaluate = {Program("evaluate"), File("out.lcm"), "--json", "-"};
+    evaluate.insert(evaluate.end(), more.begin(), more.end());
+    return nlohmann::json::parse(run(evaluate));
   }
 
   const TemporaryFolder folder_;
 };
+
+// A person that no setting was made for, ten jumps over the whole search space.
+TEST_F(ToolsProcessTest, ASampleHeadIsFoundAtOnceAndAfterEachJump) {
+  const auto json = Evaluate("man_static", {"--align-head-frame"});
+  EXPECT_GE(json["share_tracking"], 0.9);
+  EXPECT_LE(json["first_lock_s"], 0.67);  // ten frames
+  EXPECT_EQ(json["aligned"]["share_false_tracking"], 0);
+  EXPECT_LT(json["aligned"]["position_mm"]["norm"]["rmse"], 3);
+  EXPECT_LT(json["aligned"]["angle_deg"]["total"]["rmse"], 2.5);
+}
 
 TEST_F(ToolsProcessTest, TheShuttleGoesThroughImportReplayAndEvaluate) {
   const auto json = Evaluate("man_shuttle");

@@ -1,0 +1,149 @@
+#include "services/recogniser/refined/refined_estimator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/recogniser/recogniser_config.h"
+#include "tests/support/malloc_counter.h"
+#include "tests/support/mesh_scene.h"
+#include "tests/support/stereo_scene.h"
+
+namespace visavis {
+namespace {
+
+const Vector6d kPlace = PhiOf(40, -20, 1000, 4, -8, 5);
+
+double FrozenTime() { return 0; }
+
+/// A painted head before an estimator with the default settings.
+class RefinedEstimatorTest : public ::testing::Test {
+ protected:
+  RefinedEstimatorTest()
+      : scene_(TestRig()),
+        estimator_(RecogniserConfig{}.RefinedSettings(), HeadShape{}, TestRig()) {
+    timer_.Restart();
+  }
+
+  enum class Eyes { kBoth, kRight, kLeft, kSwapped };
+
+  const Estimate& See(Eyes eyes = Eyes::kBoth, const CameraStep& step = {}) {
+    StereoFrame frame;
+    frame.utime_us = 33'333 * frames_++;
+    if (eyes != Eyes::kLeft) frame.right = scene_.picture(eyes == Eyes::kSwapped ? 1 : 0);
+    if (eyes != Eyes::kRight) frame.left = scene_.picture(eyes == Eyes::kSwapped ? 0 : 1);
+    return estimator_.Process(frame, step, &timer_);
+  }
+  const Estimate& SeeHeadAt(const Vector6d& phi, const CameraStep& step = {}) {
+    truth_ = TransformFromPhi(phi);
+    scene_.Show(truth_, FeaturedHead);
+    return See(Eyes::kBoth, step);
+  }
+  void ExpectTracked(const Estimate& estimate, double mm, double deg) const {
+    EXPECT_EQ(estimate.status, TrackStatus::kTracking);
+    ASSERT_TRUE(estimate.X_CM);
+    const auto error = ComputeRecognitionError(truth_, *estimate.X_CM);
+    EXPECT_LT(1e3 * error.position.norm(), mm);
+    EXPECT_LT(error.total_angle * 180 / M_PI, deg);
+  }
+
+  MeshScene scene_;
+  RefinedEstimator estimator_;
+  StageTimer timer_{&FrozenTime};
+  RigidTransform truth_;
+  std::int64_t frames_{0};
+};
+
+TEST_F(RefinedEstimatorTest, FindsAHeadOfUnknownPoseInTheFirstFrame) {
+  ExpectTracked(SeeHeadAt(kPlace), 4, 2);
+}
+
+TEST_F(RefinedEstimatorTest, FollowsAHeadThatMoves) {
+  SeeHeadAt(kPlace);
+  for (int i = 1; i <= 20; ++i) {
+    const double s = static_cast<double>(i);
+    ExpectTracked(SeeHeadAt(kPlace + s * PhiOf(2, -1, 3, 0.2, 0.3, -0.2)), 4, 2);
+  }
+}
+
+TEST_F(RefinedEstimatorTest, TheFeedforwardCarriesTheHeadOverALargeStepOfTheCamera) {
+  SeeHeadAt(kPlace);
+  CameraStep step;
+  step.known = true;
+  step.dt_s = 0.033;
+  step.X_C2C1 = MakeTransform(ExpRotation({0, 0.02, 0}), Eigen::Vector3d(-0.04, 0.01, 0.02));
+  const Vector6d next = PhiFromTransform(step.X_C2C1 * TransformFromPhi(kPlace));
+  const Estimate& estimate = SeeHeadAt(next, step);
+  ExpectTracked(estimate, 4, 2);
+  EXPECT_EQ(estimate.feedforward, FeedforwardMode::kExact);
+  EXPECT_LT(estimate.evaluations, 200);  // tracked, not searched for
+}
+
+TEST_F(RefinedEstimatorTest, AHeadThatJumpsIsFoundWithinTenFrames) {
+  for (int i = 0; i < 5; ++i) SeeHeadAt(kPlace);
+  const Vector6d elsewhere = PhiOf(-110, 50, 1120, -10, 12, -8);
+  int lost = 0;
+  while (lost < 10 && SeeHeadAt(elsewhere).status != TrackStatus::kTracking) ++lost;
+  ExpectTracked(SeeHeadAt(elsewhere), 5, 2.5);
+}
+
+TEST_F(RefinedEstimatorTest, AnEmptyRoomIsNeverTracked) {
+  truth_ = TransformFromPhi(PhiOf(3000, 0, 1000, 0, 0, 0));  // out of sight
+  scene_.Show(truth_, FeaturedHead);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(See().status, TrackStatus::kSearching);
+}
+
+TEST_F(RefinedEstimatorTest, AHeadThatLeavesIsLostAtOnceAndTrackedWhenItComesBack) {
+  for (int i = 0; i < 5; ++i) SeeHeadAt(kPlace);
+  scene_.Show(TransformFromPhi(PhiOf(3000, 0, 1000, 0, 0, 0)), FeaturedHead);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(See().status, TrackStatus::kLost);
+  int lost = 0;
+  while (lost < 10 && SeeHeadAt(kPlace).status != TrackStatus::kTracking) ++lost;
+  ExpectTracked(SeeHeadAt(kPlace), 5, 2.5);
+}
+
+TEST_F(RefinedEstimatorTest, SwappedEyesAreNeverTracked) {
+  scene_.Show(TransformFromPhi(kPlace), FeaturedHead);
+  for (int i = 0; i < 4; ++i) EXPECT_NE(See(Eyes::kSwapped).status, TrackStatus::kTracking);
+}
+
+TEST_F(RefinedEstimatorTest, OneEyeGoesOnWhereBothWere) {
+  for (int i = 0; i < 10; ++i) SeeHeadAt(kPlace);
+  for (const Eyes eye : {Eyes::kRight, Eyes::kLeft}) ExpectTracked(See(eye), 12, 2.5);
+  ExpectTracked(See(), 4, 2);
+}
+
+TEST_F(RefinedEstimatorTest, ATrackedFrameAllocatesNothing) {
+  if (NumMallocs() < 0) GTEST_SKIP() << "mallocs cannot be counted under a sanitizer";
+  for (int i = 0; i < 30; ++i) SeeHeadAt(kPlace);
+  const std::int64_t before = NumMallocs();
+  for (int i = 0; i < 10; ++i) See();
+  EXPECT_EQ(NumMallocs(), before);
+  ExpectTracked(See(), 4, 2);
+}
+
+TEST_F(RefinedEstimatorTest, ResetForgetsTheHeadAndTheSameFramesGiveTheSamePoses) {
+  std::vector<Eigen::Matrix4d> first;
+  for (int i = 0; i < 4; ++i) first.push_back(SeeHeadAt(kPlace).X_CM->matrix());
+  RefinedEstimator again(RecogniserConfig{}.RefinedSettings(), HeadShape{}, TestRig());
+  StereoFrame frame;
+  frame.right = scene_.picture(0);
+  frame.left = scene_.picture(1);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(again.Process(frame, {}, &timer_).X_CM->matrix(), first[static_cast<std::size_t>(i)]);
+  }
+  estimator_.Reset();
+  EXPECT_GT(See().evaluations, 500);  // searched for anew
+}
+
+TEST_F(RefinedEstimatorTest, TheCovarianceIsSymmetricAndDepthTheWeakestDirection) {
+  const Estimate& estimate = SeeHeadAt(kPlace);
+  ASSERT_TRUE(estimate.covariance);
+  const auto& covariance = *estimate.covariance;
+  EXPECT_TRUE(covariance.isApprox(covariance.transpose(), 1e-9));
+  EXPECT_GT(covariance(2, 2), covariance(0, 0));
+  EXPECT_GT(covariance(2, 2), covariance(1, 1));
+  EXPECT_GT(covariance.diagonal().minCoeff(), 0);
+}
+
+}  // namespace
+}  // namespace visavis
