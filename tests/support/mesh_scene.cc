@@ -25,7 +25,7 @@ bool InEllipse(float dx, float dy, float a, float b) {
 
 bool IsDark(const Vector3f& p_M) {
   const HeadShape& s = SharedAdultHead().surface.shape();
-  if (p_M.z() > -0.035f) return false;
+  if (p_M.z() > -0.030f) return false;
   const float x = std::abs(p_M.x()), y = p_M.y();
   return InEllipse(x - s.eye_x, y - s.eye_y, 0.012f, 0.005f) ||
          InEllipse(x - 0.033f, y - s.brow_y, 0.019f, 0.003f) ||

@@ -11,8 +11,8 @@ constexpr int kFewest = 40;             ///< points that a gain is fitted to
 constexpr double kFaintContrast = 0.3;  ///< [levels] below which the pattern is not seen at all
 constexpr float kNoise = 0.5f;          ///< [levels]
 // Cosine below which the eyes' pictures of a point are not compared. The surroundings that blur
-// into the points near the outline lie at another depth and pull z: by 3 mm at 0.3, by 0.3 mm at
-// 0.7.
+// into the points near the outline lie at another depth and pull z: by 3 mm at 0.3, by less than
+// 0.8 mm at 0.7.
 constexpr float kStereoFacing = 0.7f;
 
 struct Moments {

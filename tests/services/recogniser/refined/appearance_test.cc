@@ -50,8 +50,8 @@ class AppearanceTest : public ::testing::Test {
 
   PoseEquations StereoAt(const RigidTransform& X_CM, Band band) const {
     PoseEquations equations;
-    AddStereo(Face(), Sample(0, X_CM, band), Sample(1, X_CM, band), X_CM.linear().cast<float>(), 3,
-              1, &equations);
+    AddStereo(Face(), Sample(0, X_CM, band), Sample(1, X_CM, band), X_CM.linear().cast<float>(),
+              0.35f, 1, &equations);
     return equations;
   }
 
@@ -216,7 +216,7 @@ TEST_F(AppearanceTest, TooFewPointsAddNothing) {
   AddPattern(Face(), truth, X_CM_.linear().cast<float>(), truth.value, few, 0.45f, 1, &equations);
   EXPECT_EQ(equations.H, Matrix6d::Zero());
   const FaceSamples none(Face().size());
-  EXPECT_EQ(AddStereo(Face(), truth, none, X_CM_.linear().cast<float>(), 3, 1, &equations), 0);
+  EXPECT_EQ(AddStereo(Face(), truth, none, X_CM_.linear().cast<float>(), 0.35f, 1, &equations), 0);
   EXPECT_EQ(equations.H, Matrix6d::Zero());
 }
 
@@ -233,7 +233,8 @@ TEST_F(AppearanceTest, TheSurroundingsDoNotPullTheDepth) {
     const RigidTransform X = TransformFromPhi(phi);
     scene_.Show(X, FeaturedHead);
     const PoseEquations equations = StereoAt(X, kFineBand);
-    EXPECT_LT(std::abs(equations.g[2] / equations.H(2, 2)), 0.0007);
+    // 3 mm where all points count.
+    EXPECT_LT(std::abs(equations.g[2] / equations.H(2, 2)), 0.001);
   }
 }
 
@@ -241,7 +242,8 @@ TEST_F(AppearanceTest, EyesThatAgreeCorrelateAndAWrongDepthCorrelatesLess) {
   const auto correlation = [&](double z) {
     const RigidTransform X = Moved(X_CM_, z * Vector6d::Unit(2));
     PoseEquations ignored;
-    return AddStereo(Face(), Sample(0, X), Sample(1, X), X.linear().cast<float>(), 3, 1, &ignored);
+    return AddStereo(Face(), Sample(0, X), Sample(1, X), X.linear().cast<float>(), 0.35f, 1,
+                     &ignored);
   };
   EXPECT_GT(correlation(0), 0.8);
   EXPECT_LT(correlation(0.03), correlation(0) - 0.3);
@@ -256,7 +258,7 @@ TEST_F(AppearanceTest, TheEyesMayDifferInGainAndOffset) {
     left.slope[i] *= 0.5f;
   }
   PoseEquations equations;
-  AddStereo(Face(), right, left, X.linear().cast<float>(), 3, 1, &equations);
+  AddStereo(Face(), right, left, X.linear().cast<float>(), 0.35f, 1, &equations);
   EXPECT_NEAR(equations.g[2] / equations.H(2, 2), -0.005, 0.0015);
 }
 

@@ -151,7 +151,7 @@ TEST(FacePointsTest, FeaturesFollowTheShape) {
     for (std::size_t i = 0; i < face.size(); ++i) {
       const Vector3f& p = face.points[i];
       if (!face.has_generic[i] || std::abs(std::abs(p.x()) - 0.031f) > 0.006f) continue;
-      if (p.y() < 0.013f || p.y() > 0.045f) continue;
+      if (p.y() < 0.006f || p.y() > 0.038f) continue;
       const float dark = std::max(0.0f, -face.generic[kFineBand][i]);
       sum += dark;
       weighted += dark * p.y();

@@ -142,7 +142,7 @@ TEST(HeadMeshTest, NoColourIsTakenFromFeaturesNeckAndHairline) {
     const Vector3f& p = head.mesh.vertices[i];
     if (!head.mesh.coloured[i]) continue;
     EXPECT_NE(head.mesh.parts[i], HeadPart::kFeature);
-    EXPECT_LE(p.y(), 0.105f);
+    EXPECT_LE(p.y(), 0.098f);
     EXPECT_GE(std::abs(head.surface.HairSide(p)), 0.006f);
     (head.mesh.parts[i] == HeadPart::kHair ? hair : skin) += 1;
   }

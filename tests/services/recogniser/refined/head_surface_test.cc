@@ -41,7 +41,8 @@ TEST(HeadSurfaceTest, BreadthHeightAndDepthAreThoseOfItsBodiesAndHair) {
   HeadShape shape;
   const HeadSurface head(shape);
   EXPECT_NEAR(head.Radius({1, 0, 0}), shape.cranium.x() + shape.hair, 0.001f);
-  EXPECT_NEAR(head.Radius({0, -1, 0}), shape.cranium.y() + 1.6f * shape.hair, 0.003f);
+  EXPECT_NEAR(head.Radius({0, -1, 0}),
+              shape.cranium.y() - shape.cranium_centre.y() + 1.6f * shape.hair, 0.003f);
   EXPECT_NEAR(head.Radius({0, 0, 1}),
               shape.cranium.z() + shape.cranium_centre.z() + 1.4f * shape.hair, 0.001f);
   shape.hair = 0;
