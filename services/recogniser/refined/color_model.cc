@@ -9,7 +9,9 @@ namespace {
 constexpr float kUniform = 1.0f / ColorModel::kBins;
 constexpr float kFloor = 0.05f * kUniform;  ///< no colour is impossible
 constexpr float kLeastRate = 0.06f;         ///< of new observations against the old
-constexpr float kEnough = 20;               ///< counts that a class learns from
+/// Of the prior for good: what was seen of a head from one side is not all of its colours.
+constexpr float kPriorShare = 0.1f;
+constexpr float kEnough = 20;  ///< counts that a class learns from
 
 /// Each bin shares with its neighbours along the three axes.
 void Blur(float* bins, float centre) {
@@ -89,6 +91,7 @@ void ColorModel::Start() {
   }
   Normalise(&shares_[kSkinColor]);
   Normalise(&shares_[kHairColor]);
+  for (std::size_t c = 0; c < prior_.size(); ++c) prior_[c] = shares_[c];
   MakeTable();
 }
 
@@ -114,7 +117,10 @@ void ColorModel::MakeTable() {
         std::lround(std::clamp(score + static_cast<float>(kScoreZero), 1.0f, 255.0f)));
   };
   for (std::size_t i = 0; i < kBins; ++i) {
-    const float skin = shares_[kSkinColor][i] + kFloor, hair = shares_[kHairColor][i] + kFloor;
+    const auto mixed = [&](ColorClass c) {
+      return (1 - kPriorShare) * shares_[c][i] + kPriorShare * prior_[c][i] + kFloor;
+    };
+    const float skin = mixed(kSkinColor), hair = mixed(kHairColor);
     const float around = 1 / (shares_[kSurroundings][i] + kFloor);
     table_[i] = byte(hair * around) | byte(skin * around) << 8 |
                 byte(0.5f * (hair + skin) * around) << 16 | 0xff000000u;

@@ -62,6 +62,7 @@ class ColorModel {
   void MakeTable();
 
   std::array<std::vector<float>, kNumColorClasses> shares_;  // each sums to about 1
+  std::array<std::vector<float>, 2> prior_;                  // of skin and hair
   std::vector<PackedScores> table_;
   int times_learned_{0};
 };

@@ -14,6 +14,8 @@ constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the patter
 // those near the outline.
 constexpr float kMinFacing = 0.6f;
 constexpr float kStereoSigma = 0.35f;  ///< of the face's contrast
+// Depth comes from both eyes: outlines take a large head for a near one.
+constexpr double kAnchorStereo = 2;
 
 }  // namespace
 
@@ -88,7 +90,8 @@ PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform&
   ContourFit ignored;
   Refined ignored_too;
   AddContours(view, poses, 6, config_.outline_weight, &equations, &ignored);
-  AddGenericFace(view, poses, kFineBand, 0.5 * config_.stereo_weight, &equations, &ignored_too);
+  AddGenericFace(view, poses, kFineBand, kAnchorStereo * config_.stereo_weight, &equations,
+                 &ignored_too);
   Matrix6d R = Matrix6d::Zero();
   R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();
   PoseEquations in_head;
@@ -119,6 +122,7 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     }
     refined.information = equations.Full();
     Vector6d step = refined.information.ldlt().solve(equations.g);
+    if (!step.allFinite()) break;
     const double way = step.head<3>().norm(), turn = step.tail<3>().norm();
     if (way > kMaxStep_m) step.head<3>() *= kMaxStep_m / way;
     if (turn > kMaxStep_rad) step.tail<3>() *= kMaxStep_rad / turn;

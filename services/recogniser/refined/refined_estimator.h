@@ -36,7 +36,7 @@ class RefinedEstimator final : public Estimator {
     /// What decides between candidates: the fitness, how far both eyes agree on the surface, and
     /// how well the contours lie.
     double merit() const {
-      return score.total() + 2 * refined.stereo_ncc - 0.2 * refined.contour.rms_px();
+      return score.total() + refined.stereo_ncc - 0.2 * refined.contour.rms_px();
     }
   };
   const Candidate& last() const { return candidate_; }

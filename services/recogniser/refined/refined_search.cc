@@ -7,7 +7,7 @@
 namespace visavis {
 namespace {
 
-constexpr double kLeastGlance = -0.3;  ///< below: not worth an evaluation
+constexpr double kLeastGlance = -0.5;  ///< below: not worth an evaluation
 constexpr double kHopeless = -3;       ///< fitness then
 constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
 constexpr double kTurn_rad = 0.3;
@@ -81,13 +81,19 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
       consider(RotationFromAngles({0, turn, -turn}));
     }
   }
+  const auto drop_implausible = [&] {
+    const auto end =
+        std::remove_if(candidates_.begin(), candidates_.end(),
+                       [&](const Candidate& c) { return !IsPlausible(c.refined.X_CM); });
+    if (end != candidates_.begin()) candidates_.erase(end, candidates_.end());
+  };
+  drop_implausible();
   std::sort(candidates_.begin(), candidates_.end(), by_merit);
   candidates_.resize(std::min(candidates_.size(), kPromising));
   for (Candidate& candidate : candidates_) {
-    const RigidTransform& X = candidate.refined.X_CM;
-    if (X.matrix().allFinite())
-      candidate = RefineFrom(X, nullptr, settings_.refined.search_iterations, 8);
+    candidate = RefineFrom(candidate.refined.X_CM, nullptr, settings_.refined.search_iterations, 8);
   }
+  drop_implausible();
   std::sort(candidates_.begin(), candidates_.end(), by_merit);
 }
 
