@@ -50,7 +50,8 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
       context_(context),
       timer_(&MonotonicSeconds),
       ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
-      feedforward_(ParseFeedforward(config.feedforward)) {
+      feedforward_(ParseFeedforward(config.feedforward)),
+      estimator_name_(config.estimator) {
   SelectSimdTarget(config.simd.c_str());
   if (!config.rig_file.empty()) SetRig(LoadRigFile(config.rig_file));
   const RecogniserChannels& channels = config_.channels;
@@ -73,17 +74,21 @@ RecogniserService::~RecogniserService() = default;
 void RecogniserService::SetRig(const RigDescription& description) {
   ego_motion_.SetRig(description);
   preparer_ = std::make_unique<FramePreparer>(description.rig);
-  if (config_.estimator == "refined") {
-    estimator_ =
-        std::make_unique<RefinedEstimator>(config_.RefinedSettings(), HeadShape{}, description.rig);
+  MakeEstimator(description.rig);
+  rig_ = description.rig;
+  last_utime_us_.reset();
+  head_was_tracked_ = false;
+}
+
+void RecogniserService::MakeEstimator(const StereoRig& rig) {
+  if (estimator_name_ == "refined") {
+    estimator_ = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), HeadShape{}, rig);
   } else {
-    estimator_ = std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head,
-                                                      description.rig);
+    estimator_ =
+        std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head, rig);
   }
   estimator_->SetFeedforward(feedforward_);
   if (commanded_space_) estimator_->SetSearchSpace(*commanded_space_);
-  rig_ = description.rig;
-  last_utime_us_.reset();
   head_was_tracked_ = false;
 }
 
@@ -143,9 +148,10 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
   RequireField(message.pause >= recogniser_command_t::SWITCH_KEEP &&
                    message.pause <= recogniser_command_t::SWITCH_OFF,
                "recogniser_command_t.pause", int{message.pause}, "must be 0, 1 or 2");
-  RequireField(message.estimator.empty() || message.estimator == config_.estimator,
+  RequireField(message.estimator.empty() || message.estimator == "published" ||
+                   message.estimator == "refined",
                "recogniser_command_t.estimator", message.estimator,
-               "must be empty or the one configured");
+               "must be empty, published or refined");
   const FeedforwardMode feedforward =
       message.feedforward.empty() ? feedforward_ : ParseFeedforward(message.feedforward);
   if (message.set_search_space) commanded_space_ = SearchSpaceFromMessage(message);
@@ -154,7 +160,10 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
   if (message.pause == recogniser_command_t::SWITCH_ON) paused_ = true;
   if (message.pause == recogniser_command_t::SWITCH_OFF) paused_ = false;
   context_.status->SetCondition("paused", paused_ ? "paused by command" : "");
+  const bool is_other = !message.estimator.empty() && message.estimator != estimator_name_;
+  if (is_other) estimator_name_ = message.estimator;
   if (!estimator_) return;
+  if (is_other) MakeEstimator(*rig_);  // it looks for the head afresh
   estimator_->SetFeedforward(feedforward_);
   if (message.set_search_space) estimator_->SetSearchSpace(*commanded_space_);
   if (message.reset) {

@@ -48,6 +48,7 @@ class RecogniserService final : public Service {
   void OnCommand(const recogniser_command_t& message);
 
   void SetRig(const RigDescription& rig);
+  void MakeEstimator(const StereoRig& rig);
   void BeginSessionIfPairsJumpBack(std::int64_t utime_us);
   void ProcessWaitingOfOldSession(std::int64_t motion_utime_us);
   void CheckReady();
@@ -68,6 +69,7 @@ class RecogniserService final : public Service {
   std::unique_ptr<FramePreparer> preparer_;
   std::unique_ptr<Estimator> estimator_;
   FeedforwardMode feedforward_;
+  std::string estimator_name_;  // in use
 
   images_t waiting_;  // the pair that waits; its memory is reused
   bool is_waiting_{false};

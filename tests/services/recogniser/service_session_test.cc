@@ -222,6 +222,22 @@ TEST_F(ServiceSessionTest, ResetForgetsTheHead) {
   EXPECT_EQ(bench_.Poses().back().seq, 3);  // the session goes on
 }
 
+TEST_F(ServiceSessionTest, TheEstimatorChangesByCommandAndLooksForTheHeadAfresh) {
+  const std::int64_t t_us = Track(0);
+  recogniser_command_t command = Command();
+  command.estimator = "published";  // as it is: nothing happens
+  bench_.Send("RECOGNISER_COMMAND", command, t_us);
+  bench_.SendPair(t_us + 33'000, TinyRig());
+  EXPECT_EQ(LastStatus(), head_pose_t::STATUS_TRACKING);
+  const int evaluations = bench_.Poses().back().evaluations;
+  command.estimator = "refined";
+  bench_.Send("RECOGNISER_COMMAND", command, t_us + 33'000);
+  bench_.SendPair(t_us + 66'000, TinyRig());
+  EXPECT_EQ(LastStatus(), head_pose_t::STATUS_SEARCHING);
+  EXPECT_NE(bench_.Poses().back().evaluations, evaluations);
+  EXPECT_EQ(bench_.Poses().back().seq, 4);  // the session goes on
+}
+
 TEST_F(ServiceSessionTest, PausedPairsAreLostWithoutEvaluationUntilThePauseEnds) {
   std::int64_t t_us = Track(0);
   recogniser_command_t command = Command();
