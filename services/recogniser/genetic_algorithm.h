@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -29,8 +30,10 @@ struct GaConfig {
   void ValidateOrThrow(const std::string& prefix) const;
 
   /// Shares in whole individuals.
-  int num_elite() const { return static_cast<int>(elite_share * individuals + 0.5); }
-  int num_immigrants() const { return static_cast<int>(immigrant_share * individuals + 0.5); }
+  int num_elite() const { return static_cast<int>(std::lround(elite_share * individuals)); }
+  int num_immigrants() const {
+    return static_cast<int>(std::lround(immigrant_share * individuals));
+  }
 
   int individuals{60};
   int bits_per_parameter{8};          ///< 6 parameters, so 48 bits a gene as published

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -47,7 +48,8 @@ class PackedMap {
   /// The border's first pixel, at (-1, -1).
   const std::uint32_t* data() const { return pixels_.data(); }
   std::uint32_t at(int x, int y) const {
-    return pixels_[static_cast<std::size_t>((y + 1) * stride() + x + 1)];
+    return pixels_[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride()) +
+                   static_cast<std::size_t>(x + 1)];
   }
 
  private:

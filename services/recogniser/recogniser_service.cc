@@ -183,7 +183,7 @@ void RecogniserService::OnImages(const images_t& message) {
   waiting_ = message;
   is_waiting_ = true;
   waiting_received_us_ = now_us;
-  wait_until_us_ = now_us + 1000 * config_.arm_wait_ms;
+  wait_until_us_ = now_us + std::int64_t{1000} * config_.arm_wait_ms;
 }
 
 void RecogniserService::CheckReady() {

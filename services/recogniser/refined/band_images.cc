@@ -9,7 +9,8 @@ namespace visavis {
 BandImages::BandImages(int width, int height) {
   VISAVIS_THROW_UNLESS(width >= 16 && height >= 16, width);
   const auto cells = [&](int divisor) {
-    return static_cast<std::size_t>((width / divisor + 1) * (height / divisor + 1));
+    return static_cast<std::size_t>(width / divisor + 1) *
+           static_cast<std::size_t>(height / divisor + 1);
   };
   for (Plane* plane : {&half_, &smooth_half_, &scratch_, &bands_[kFineBand]}) {
     plane->data.resize(cells(2));
@@ -29,22 +30,22 @@ void BandImages::HalfBrightness(const ImageView& image, const PixelBox& box) {
   Resize(&half_, box.width() / 2, box.height() / 2);
   const bool gray = image.format == PixelFormat::kGray;
   const int red = image.format == PixelFormat::kBgr ? 2 : 0, blue = 2 - red;
+  const std::ptrdiff_t left = std::ptrdiff_t{box.x0} * (gray ? 1 : 3);  // [bytes] into a row
   for (int y = 0; y < half_.height; ++y) {
-    const std::uint8_t* top = image.row(box.y0 + 2 * y) + box.x0 * (gray ? 1 : 3);
-    const std::uint8_t* bottom = image.row(box.y0 + 2 * y + 1) + box.x0 * (gray ? 1 : 3);
+    const std::uint8_t* top = image.row(box.y0 + 2 * y) + left;
+    const std::uint8_t* bottom = image.row(box.y0 + 2 * y + 1) + left;
     float* out = half_.row(y);
     if (gray) {
-      for (int x = 0; x < half_.width; ++x) {
-        const int sum = top[2 * x] + top[2 * x + 1] + bottom[2 * x] + bottom[2 * x + 1];
+      for (int x = 0; x < half_.width; ++x, top += 2, bottom += 2) {
+        const int sum = top[0] + top[1] + bottom[0] + bottom[1];
         out[x] = 0.25f * static_cast<float>(sum);
       }
       continue;
     }
-    for (int x = 0; x < half_.width; ++x) {
-      const std::uint8_t *a = top + 6 * x, *b = bottom + 6 * x;
-      const int r = a[red] + a[red + 3] + b[red] + b[red + 3];
-      const int g = a[1] + a[4] + b[1] + b[4];
-      const int bl = a[blue] + a[blue + 3] + b[blue] + b[blue + 3];
+    for (int x = 0; x < half_.width; ++x, top += 6, bottom += 6) {
+      const int r = top[red] + top[red + 3] + bottom[red] + bottom[red + 3];
+      const int g = top[1] + top[4] + bottom[1] + bottom[4];
+      const int bl = top[blue] + top[blue + 3] + bottom[blue] + bottom[blue + 3];
       out[x] = (1.0f / 1024) * static_cast<float>(77 * r + 150 * g + 29 * bl);
     }
   }
@@ -56,8 +57,8 @@ void BandImages::Halve(const Plane& from, Plane* to) {
   for (int y = 0; y < to->height; ++y) {
     const float *a = from.row(2 * y), *b = from.row(2 * y + 1);
     float* out = to->row(y);
-    for (int x = 0; x < to->width; ++x) {
-      out[x] = 0.25f * (a[2 * x] + a[2 * x + 1] + b[2 * x] + b[2 * x + 1]);
+    for (int x = 0; x < to->width; ++x, a += 2, b += 2) {
+      out[x] = 0.25f * (a[0] + a[1] + b[0] + b[1]);
     }
   }
 }
@@ -99,10 +100,10 @@ void BandImages::SubtractDoubled(const Plane& from, const Plane& coarse, Plane* 
     float* out = to->row(y);
     const auto blend = [&](int x) { return 0.75f * n[x] + 0.25f * f[x]; };
     float before = blend(0), here = before;
-    for (int x = 0; x < coarse.width; ++x) {
+    for (int x = 0; x < coarse.width; ++x, in += 2, out += 2) {
       const float after = blend(std::min(x + 1, coarse.width - 1));
-      out[2 * x] = in[2 * x] - (0.75f * here + 0.25f * before);
-      out[2 * x + 1] = in[2 * x + 1] - (0.75f * here + 0.25f * after);
+      out[0] = in[0] - (0.75f * here + 0.25f * before);
+      out[1] = in[1] - (0.75f * here + 0.25f * after);
       before = here;
       here = after;
     }
@@ -137,7 +138,7 @@ bool BandImages::At(Band band, float u, float v, Sample* sample) const {
   }
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const int w = plane.width;
+  const std::ptrdiff_t w = plane.width;
   const float* p = plane.row(j) + i;
   // Columns and rows of the 4 x 4 neighbourhood, each interpolated across.
   const auto row = [&](const float* q) { return q[0] + a * (q[1] - q[0]); };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "common/image/image.h"
@@ -44,8 +45,8 @@ class BandImages {
   struct Plane {
     std::vector<float> data;
     int width{0}, height{0};
-    float* row(int y) { return data.data() + y * width; }
-    const float* row(int y) const { return data.data() + y * width; }
+    float* row(int y) { return data.data() + static_cast<std::ptrdiff_t>(y) * width; }
+    const float* row(int y) const { return data.data() + static_cast<std::ptrdiff_t>(y) * width; }
   };
   void Resize(Plane* plane, int width, int height) const;
   void HalfBrightness(const ImageView& image, const PixelBox& box);

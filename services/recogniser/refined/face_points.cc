@@ -11,9 +11,11 @@ using Eigen::Vector3f;
 // The drawing of a face seen from the front: 1 mm a cell, the origin of M in the middle column.
 constexpr int kColumns = 161, kRows = 201, kMiddle = 80, kTop = 50;
 
+constexpr float kHighest_m = -0.037f, kLowest_m = 0.109f;  ///< rows of points, y in M
+
 class Drawing {
  public:
-  Drawing() : cells_(static_cast<std::size_t>(kColumns * kRows)) {}
+  Drawing() : cells_(static_cast<std::size_t>(kColumns) * kRows) {}
 
   /// Darkens where @p inside(x_mm, y_mm) to at least @p darkness.
   template <typename Inside>
@@ -21,7 +23,7 @@ class Drawing {
     for (int j = 0; j < kRows; ++j) {
       for (int i = 0; i < kColumns; ++i) {
         if (!inside(static_cast<float>(i - kMiddle), static_cast<float>(j - kTop))) continue;
-        float& cell = cells_[static_cast<std::size_t>(j * kColumns + i)];
+        float& cell = cells_[Index(i, j)];
         cell = std::min(cell, -darkness);
       }
     }
@@ -37,21 +39,20 @@ class Drawing {
       sum += weights.back();
     }
     for (float& w : weights) w /= sum;
+    const float* weight = weights.data() + radius;  // weight[k] of k = -radius ... radius
     Drawing rows, both;
     for (int j = 0; j < kRows; ++j) {
       for (int i = 0; i < kColumns; ++i) {
         float value = 0;
-        for (int k = -radius; k <= radius; ++k)
-          value += weights[static_cast<std::size_t>(k + radius)] * Cell(i + k, j);
-        rows.cells_[static_cast<std::size_t>(j * kColumns + i)] = value;
+        for (int k = -radius; k <= radius; ++k) value += weight[k] * Cell(i + k, j);
+        rows.cells_[Index(i, j)] = value;
       }
     }
     for (int j = 0; j < kRows; ++j) {
       for (int i = 0; i < kColumns; ++i) {
         float value = 0;
-        for (int k = -radius; k <= radius; ++k)
-          value += weights[static_cast<std::size_t>(k + radius)] * rows.Cell(i, j + k);
-        both.cells_[static_cast<std::size_t>(j * kColumns + i)] = value;
+        for (int k = -radius; k <= radius; ++k) value += weight[k] * rows.Cell(i, j + k);
+        both.cells_[Index(i, j)] = value;
       }
     }
     return both;
@@ -63,10 +64,13 @@ class Drawing {
   }
 
  private:
+  static std::size_t Index(int i, int j) {
+    return static_cast<std::size_t>(j) * kColumns + static_cast<std::size_t>(i);
+  }
   float Cell(int i, int j) const {
     i = std::clamp(i, 0, kColumns - 1);
     j = std::clamp(j, 0, kRows - 1);
-    return cells_[static_cast<std::size_t>(j * kColumns + i)];
+    return cells_[Index(i, j)];
   }
   std::vector<float> cells_;
 };
@@ -117,7 +121,9 @@ FacePoints FacePointsOf(const HeadSurface& surface, double spacing_m) {
   const Drawing drawing = GenericFace(surface.shape());
   const std::array<Drawing, 4> blurred = {drawing.Blurred(1.9f), drawing.Blurred(7.5f),
                                           drawing.Blurred(4.0f), drawing.Blurred(14.0f)};
-  for (float y = -0.037f; y <= 0.109f; y += step) {
+  const int num_rows = static_cast<int>((kLowest_m - kHighest_m) / step) + 1;
+  float y = kHighest_m;
+  for (int row = 0; row < num_rows; ++row, y += step) {
     float azimuth = 0;
     for (int column = 0; azimuth < 1.35f; ++column) {
       const Vector3f right = PointAt(surface, y, azimuth);

@@ -27,7 +27,7 @@ void HeadAnchor::Add(const Eigen::Vector3d& direction, const PoseEquations& gene
     best = cosine;
     nearest = &view;
   }
-  if ((nearest == nullptr || best < std::cos(kSameView_rad)) && views_.size() < kMaxViews) {
+  if (nearest == nullptr || (best < std::cos(kSameView_rad) && views_.size() < kMaxViews)) {
     views_.push_back({direction, generic, 1});
     return;
   }

@@ -116,7 +116,8 @@ Hairline HairlineOf(const HeadSurface& surface, int count) {
       p = surface.Radius(d) * d;
       (surface.HairSide(p) > 0 ? high : low) = middle;
     }
-    const Vector3f n = surface.NormalAt(p), h = surface.hair_normal();
+    const Vector3f n = surface.NormalAt(p);
+    const Vector3f& h = surface.hair_normal();
     line.points.push_back(p);
     line.into_hair.push_back((h - n * n.dot(h)).normalized());
   }

@@ -11,8 +11,7 @@ constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kLeastBox_px = 32;
 constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
-constexpr int kStayFrames = 15;  ///< the space stays where the head was lost
-constexpr int kPatience = 8;     ///< times as long where the strange face is no better
+constexpr int kPatience = 8;  ///< times as long where the strange face is no better
 constexpr double kClearlyWorse = 0.1;
 constexpr double kClearlyBetter = 0.05;               ///< of a correlation
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
@@ -215,7 +214,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
       const int u = static_cast<int>(std::lround(g.cx + g.fx * p.x() / p.z()));
       const int v = static_cast<int>(std::lround(g.cy + g.fy * p.y() / p.z()));
       if (u < 0 || v < 0 || u >= g.width || v >= g.height) return -1;
-      const std::uint8_t* rgb = picture.row(v) + 3 * u;
+      const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
       return ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]);
     };
     counts_.Clear();
@@ -234,8 +233,8 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
     }
     Random random(static_cast<std::uint64_t>(frames_));
     for (int k = 0; k < 300; ++k) {
-      const std::uint8_t* rgb =
-          picture.row(random.Index(picture.height)) + 3 * random.Index(picture.width);
+      const int v = random.Index(picture.height), u = random.Index(picture.width);
+      const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
       counts_.Add(kSurroundings, ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]), 0.3f);
     }
     colors_[i].Learn(&counts_);

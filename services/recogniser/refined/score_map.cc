@@ -16,7 +16,7 @@ void ScoreMap::Build(const ImageView& image, const ColorModel& model, const Pixe
   const int red = image.format == PixelFormat::kBgr ? 2 : 0;
   const PackedScores* table = model.table().data();
   for (int y = box.y0; y < box.y1; ++y) {
-    const std::uint8_t* p = image.row(y) + 3 * box.x0;
+    const std::uint8_t* p = image.row(y) + 3 * std::ptrdiff_t{box.x0};
     PackedScores* out = scores_.data() + static_cast<std::ptrdiff_t>(y) * width_;
     for (int x = box.x0; x < box.x1; ++x, p += 3) {
       out[x] = table[ColorModel::BinOf(p[red], p[1], p[2 - red])];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "common/image/image.h"
@@ -13,7 +14,9 @@ class ScoreMap {
  public:
   /// Allocates for pictures of @p width x @p height px.
   ScoreMap(int width, int height)
-      : width_(width), height_(height), scores_(static_cast<std::size_t>(width * height)) {}
+      : width_(width),
+        height_(height),
+        scores_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
   /// Fills @p box from a kRgb or kBgr picture; a kGray one leaves all scores neutral. What was
   /// filled before becomes unknown.
@@ -26,7 +29,7 @@ class ScoreMap {
           x < static_cast<float>(box_.x1) && y < static_cast<float>(box_.y1))) {
       return kUnknown;
     }
-    return scores_[static_cast<std::size_t>(static_cast<int>(y) * width_ + static_cast<int>(x))];
+    return scores_[Index(static_cast<int>(x), static_cast<int>(y))];
   }
   const PixelBox& box() const { return box_; }
   bool has_color() const { return has_color_; }
@@ -34,6 +37,11 @@ class ScoreMap {
   static constexpr PackedScores kUnknown = 0x00808080u;
 
  private:
+  std::size_t Index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
+
   int width_, height_;
   bool has_color_{false};
   PixelBox box_;
