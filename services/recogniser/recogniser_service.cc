@@ -156,6 +156,7 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
       message.feedforward.empty() ? feedforward_ : ParseFeedforward(message.feedforward);
   if (message.set_search_space) commanded_space_ = SearchSpaceFromMessage(message);
 
+  ProcessWaiting();  // a pair that waits came before the command
   feedforward_ = feedforward;
   if (message.pause == recogniser_command_t::SWITCH_ON) paused_ = true;
   if (message.pause == recogniser_command_t::SWITCH_OFF) paused_ = false;
@@ -163,11 +164,15 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
   const bool is_other = !message.estimator.empty() && message.estimator != estimator_name_;
   if (is_other) estimator_name_ = message.estimator;
   if (!estimator_) return;
-  if (is_other) MakeEstimator(*rig_);  // it looks for the head afresh
+  if (is_other) {
+    MakeEstimator(*rig_);
+    last_utime_us_.reset();
+  }  // it looks for the head afresh
   estimator_->SetFeedforward(feedforward_);
   if (message.set_search_space) estimator_->SetSearchSpace(*commanded_space_);
   if (message.reset) {
     estimator_->Reset();
+    last_utime_us_.reset();
     head_was_tracked_ = false;
   }
 }

@@ -9,6 +9,7 @@ using Eigen::Vector3f;
 
 constexpr int kFewest = 40;             ///< points that a gain is fitted to
 constexpr double kFaintContrast = 0.3;  ///< [levels] below which the pattern is not seen at all
+constexpr double kFlat = 1e-4;          ///< contrast of a pattern that is none
 constexpr float kNoise = 0.5f;          ///< [levels]
 // Cosine below which the eyes' pictures of a point are not compared. The surroundings that blur
 // into the points near the outline lie at another depth and pull z: by 3 mm at 0.3, by less than
@@ -79,6 +80,7 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
                       PoseEquations* equations) {
   const GainOffset fit = FitPattern(samples, pattern, usable);
   if (fit.count < kFewest) return fit;
+  if (!(fit.pattern_rms > kFlat)) return fit;  // nothing to tell places by
   double gain = fit.gain, offset = fit.offset;
   if (gain * fit.pattern_rms < kFaintContrast) {
     // Not recognised yet: expected with a modest contrast, never upside down.

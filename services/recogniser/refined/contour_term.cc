@@ -45,7 +45,7 @@ void ContourTerm::FindSilhouette(const EyePose& pose) {
     const Vector3f q = pose.InEye(p);
     const float du = q.x() / q.z() - u0, dv = q.y() / q.z() - v0;
     const float turn = std::atan2(dv, du) * static_cast<float>(0.5 / M_PI) + 0.5f;
-    const int bin = std::min(static_cast<int>(turn * kDirections), kDirections - 1);
+    const int bin = std::clamp(static_cast<int>(turn * kDirections), 0, kDirections - 1);
     Candidate& c = silhouette_[static_cast<std::size_t>(bin)];
     const float distance = du * du + dv * dv;
     if (distance <= c.distance) continue;

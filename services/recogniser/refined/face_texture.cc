@@ -28,6 +28,7 @@ void FaceTexture::Forget() {
   learned_ = {};
   points_ = generic_;
   for (auto& w : weight_) std::fill(w.begin(), w.end(), 0.0f);
+  for (auto& v : value_) std::fill(v.begin(), v.end(), 0.0f);
   std::fill(known_.begin(), known_.end(), static_cast<unsigned char>(0));
 }
 

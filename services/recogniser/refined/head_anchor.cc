@@ -1,6 +1,6 @@
 #include "services/recogniser/refined/head_anchor.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kMaxViews = 200;
 constexpr double kSameView_rad = 0.06;
-constexpr int kMemory = 30;                                ///< frames a view's mean looks back
+constexpr int kMemory = 30;       ///< frames a view's mean looks back
+constexpr double kUnseen = 1e-6;  ///< of the largest eigenvalue: a direction that no view tells
 constexpr double kMaxStep_m = 0.002, kMaxStep_rad = 0.01;  ///< a frame
 
 }  // namespace
@@ -43,7 +44,12 @@ RigidTransform HeadAnchor::Correct() {
     sum.H += view.mean.H;
     sum.g += view.mean.g;
   }
-  Vector6d step = sum.H.ldlt().solve(sum.g);
+  // Along directions that no view tells the frame stays.
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(sum.H);
+  const Vector6d& values = solver.eigenvalues();
+  Vector6d along = solver.eigenvectors().transpose() * sum.g;
+  for (int i = 0; i < 6; ++i) along[i] = values[i] > kUnseen * values[5] ? along[i] / values[i] : 0;
+  Vector6d step = solver.eigenvectors() * along;
   if (!step.allFinite()) return RigidTransform::Identity();
   step.head<3>() *= std::min(1.0, kMaxStep_m / std::max(step.head<3>().norm(), 1e-12));
   step.tail<3>() *= std::min(1.0, kMaxStep_rad / std::max(step.tail<3>().norm(), 1e-12));

@@ -148,7 +148,7 @@ double MeshFitness::Correlation(const EyeView& eye, const EyePose& pose) const {
   if (n < kFewestPattern) return 0;
   const float in = 1 / static_cast<float>(n);
   const float cov = xy - x * y * in, vx = xx - x * x * in, vy = yy - y * y * in;
-  return static_cast<double>(cov / std::sqrt(vx * vy + 1e-6f));
+  return static_cast<double>(cov / std::sqrt(std::max(vx * vy, 0.0f) + 1e-6f));
 }
 
 }  // namespace visavis

@@ -16,6 +16,7 @@ struct EvidenceConfig {
   template <typename A>
   void Serialize(A* a) {
     a->Visit("lock_ncc", &lock_ncc, InRange(-1.0, 1.0));
+    a->Visit("lock_gray_ncc", &lock_gray_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_stereo_ncc", &lock_stereo_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
     a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
@@ -26,6 +27,7 @@ struct EvidenceConfig {
     a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
   }
   double lock_ncc{0.2};          ///< generic pattern, before TRACKING
+  double lock_gray_ncc{0.5};     ///< the same where the pictures are grey
   double lock_stereo_ncc{0.7};   ///< agreement of both eyes, before TRACKING
   double lock_outside{-0.5};     ///< at most: how much the surroundings look like a head
   double lock_inside{0.4};       ///< at least: how much the inside does

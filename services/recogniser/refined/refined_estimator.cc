@@ -11,10 +11,7 @@ constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kLeastBox_px = 32;
 constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
-constexpr int kPatience = 8;  ///< times as long where the strange face is no better
-constexpr double kClearlyWorse = 0.1;
-constexpr double kClearlyBetter = 0.05;               ///< of a correlation
-constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
+constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
 
 /// From the normal equations, and what they cannot know: the head is not shaped as the model. The
 /// head frame's constant offset is a matter of definition and not in it.
@@ -52,8 +49,10 @@ void RefinedEstimator::Reset() {
   ForgetFace();
   for (ColorModel& colors : colors_) colors.Reset();
   centre_.reset();
+  population_ = RealPopulation(settings_.refined.population, settings_.seed);
   population_.SetSpace(settings_.space);
   population_.Restart();
+  colors_started_ = {};
   X_CM_ = settings_.start_X_CM;
   estimate_ = Estimate{};
   frames_ = 0;
@@ -75,14 +74,16 @@ void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
 void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
   if (!settings_.recentre) return;
   centre_ = p_CM;
+  is_centred_ = true;
   population_.SetSpace(settings_.space.CentredOn(p_CM));
 }
 
 void RefinedEstimator::TakePictures(const StereoFrame& frame) {
   for (std::size_t i = 0; i < 2; ++i) {
     pictures_[i] = pair_.Picture(frame, i);
-    if (frames_ == 0 && pictures_[i] && pictures_[i]->format != PixelFormat::kGray)
-      colors_[i].StartFrom(*pictures_[i]);
+    if (colors_started_[i] || !pictures_[i] || pictures_[i]->format == PixelFormat::kGray) continue;
+    colors_[i].StartFrom(*pictures_[i]);
+    colors_started_[i] = true;
   }
 }
 
@@ -110,7 +111,10 @@ void RefinedEstimator::Feedforward(const CameraStep& step) {
                : EulerStep(*phi, step.X_WC1.linear(), step.twist_1, step.dt_s);
   };
   population_.Move(move);
-  if (centre_) CentreOn(step.X_C2C1 * *centre_);
+  if (centre_) {
+    centre_ = step.X_C2C1 * *centre_;
+    if (is_centred_) CentreOn(*centre_);
+  }
   if (!X_CM_) return;
   Vector6d phi = PhiFromTransform(*X_CM_);
   move(&phi);
@@ -163,8 +167,9 @@ bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
 // What a face must show whoever it is.
 bool RefinedEstimator::IsFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  return IsPlausible(c.refined.X_CM) && c.score.ncc > e.lock_ncc &&
-         (!BothEyes() || c.refined.stereo_ncc > e.lock_stereo_ncc) &&
+  return IsPlausible(c.refined.X_CM) &&
+         c.score.ncc > (c.score.has_color ? e.lock_ncc : e.lock_gray_ncc) && BothEyes() &&
+         c.refined.stereo_ncc > e.lock_stereo_ncc &&
          (!c.score.has_color ||
           (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside));
 }
@@ -177,16 +182,14 @@ bool RefinedEstimator::IsKnownFace(const Candidate& c) const {
          (!BothEyes() || c.refined.stereo_ncc > e.keep_stereo_ncc);
 }
 
-// A face, but not as learned: it is another one, or the texture was wrong. That is likely where the
-// generic face fits better than it did under the texture.
-bool RefinedEstimator::IsToBeLearnedAnew() {
-  if (!texture_.learned()) return true;
-  if (candidate_.score.ncc < tracked_ncc_ - kClearlyWorse) return false;
-  ++strange_in_a_row_;
-  const int patience = candidate_.score.ncc > tracked_ncc_ + kClearlyBetter
-                           ? settings_.refined.evidence.strange_frames
-                           : kPatience * settings_.refined.evidence.strange_frames;
-  return strange_in_a_row_ >= patience;
+// A face, but not as learned: it is another one, or the texture was wrong. Then it is learned anew.
+bool RefinedEstimator::IsNewFace() {
+  strange_in_a_row_ = IsFace(candidate_) ? strange_in_a_row_ + 1 : 0;
+  if (strange_in_a_row_ == 0) return false;
+  if (texture_.learned() && strange_in_a_row_ < settings_.refined.evidence.strange_frames)
+    return false;
+  ForgetFace();
+  return true;
 }
 
 void RefinedEstimator::Judge(bool good) {
@@ -269,6 +272,7 @@ void RefinedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking) {
     CentreOn(X_CM_->translation());
   } else if (centre_ && bad_in_a_row_ % 2 == 1) {
+    is_centred_ = false;
     population_.SetSpace(settings_.space);
   } else if (centre_) {
     CentreOn(*centre_);
@@ -298,23 +302,15 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
     candidate_ = Recognise(Search());
-    good = IsKnownFace(candidate_);
-    if (!good && IsFace(candidate_)) {
-      // A face, but not as learned: the texture was wrong, or it is another one.
-      good =
-          !texture_.learned() || ++strange_in_a_row_ >= settings_.refined.evidence.strange_frames;
-      if (good) ForgetFace();
-    }
+    // One eye can keep a track, not begin one: its depth is a guess.
+    good = BothEyes() && (IsKnownFace(candidate_) || IsNewFace());
     if (!good) colors_ = colors_before_;
+  } else {
+    strange_in_a_row_ = 0;
   }
-  if (good) strange_in_a_row_ = 0;
   timer->Enter(Stage::kOther);
   Judge(good);
-  if (good) {
-    if (!texture_.learned()) tracked_ncc_ = candidate_.score.ncc;
-    tracked_ncc_ += 0.1 * (candidate_.score.ncc - tracked_ncc_);
-    if (texture_.learned()) MoveAnchor();
-  }
+  if (good && texture_.learned()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
   estimate_.X_CM = X_CM_;

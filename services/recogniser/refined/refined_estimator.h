@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -36,7 +37,8 @@ class RefinedEstimator final : public Estimator {
     /// What decides between candidates: the fitness, how far both eyes agree on the surface, and
     /// how well the contours lie.
     double merit() const {
-      return score.total() + refined.stereo_ncc - 0.2 * refined.contour.rms_px();
+      const double merit = score.total() + refined.stereo_ncc - 0.2 * refined.contour.rms_px();
+      return std::isfinite(merit) ? merit : -1e9;
     }
   };
   const Candidate& last() const { return candidate_; }
@@ -67,7 +69,7 @@ class RefinedEstimator final : public Estimator {
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
   bool IsKnownFace(const Candidate& candidate) const;
-  bool IsToBeLearnedAnew();
+  bool IsNewFace();
   void Judge(bool good);
   void Learn();
   void LearnColors(const RigidTransform& X_CM);
@@ -83,19 +85,20 @@ class RefinedEstimator final : public Estimator {
   FaceTexture texture_;
   HeadAnchor anchor_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
+  std::array<bool, 2> colors_started_{};
   ColorModel::Counts counts_;
   std::array<ScoreMap, 2> scores_;
   std::array<BandImages, 2> bands_;
   std::array<std::optional<ImageView>, 2> pictures_;
   StereoView view_;
   RealPopulation population_;
+  bool is_centred_{false};                 ///< the population's space is round centre_
   std::optional<Eigen::Vector3d> centre_;  ///< of the search space once a head was tracked
   std::optional<RigidTransform> X_CM_;     ///< of the last frame, carried to this one
   Candidate candidate_;
   std::vector<Candidate> candidates_;
   Estimate estimate_;
   std::int64_t frames_{0}, total_generations_{0};
-  double tracked_ncc_{0};  ///< of the generic face, mean over the last good frames
   int good_in_a_row_{0}, bad_in_a_row_{0}, strange_in_a_row_{0};
 };
 
