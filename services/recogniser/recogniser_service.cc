@@ -1,6 +1,8 @@
 #include "services/recogniser/recogniser_service.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/bus/channels.h"
 #include "common/convert/message_error.h"
@@ -71,24 +73,33 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
 
 RecogniserService::~RecogniserService() = default;
 
+// All of the new rig or, where any of it throws, nothing.
 void RecogniserService::SetRig(const RigDescription& description) {
+  auto preparer = std::make_unique<FramePreparer>(description.rig);
+  auto estimator = NewEstimator(description.rig);
   ego_motion_.SetRig(description);
-  preparer_ = std::make_unique<FramePreparer>(description.rig);
-  MakeEstimator(description.rig);
+  preparer_ = std::move(preparer);
+  estimator_ = std::move(estimator);
   rig_ = description.rig;
-  last_utime_us_.reset();
-  head_was_tracked_ = false;
+  BeginTrack();
 }
 
-void RecogniserService::MakeEstimator(const StereoRig& rig) {
+std::unique_ptr<Estimator> RecogniserService::NewEstimator(const StereoRig& rig) const {
+  std::unique_ptr<Estimator> estimator;
   if (estimator_name_ == "refined") {
-    estimator_ = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), HeadShape{}, rig);
+    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), HeadShape{}, rig);
   } else {
-    estimator_ =
+    estimator =
         std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head, rig);
   }
-  estimator_->SetFeedforward(feedforward_);
-  if (commanded_space_) estimator_->SetSearchSpace(*commanded_space_);
+  estimator->SetFeedforward(feedforward_);
+  if (commanded_space_) estimator->SetSearchSpace(*commanded_space_);
+  return estimator;
+}
+
+// The head is looked for afresh: no motion leads to the next pair.
+void RecogniserService::BeginTrack() {
+  last_utime_us_.reset();
   head_was_tracked_ = false;
 }
 
@@ -116,7 +127,6 @@ void RecogniserService::BeginSessionIfPairsJumpBack(std::int64_t utime_us) {
     head_was_tracked_ = false;
     newest_pair_us_ = utime_us;
   }
-  newest_pair_us_ = std::max(newest_pair_us_, utime_us);
 }
 
 // Motion of a new session makes a history forget the old one: a pair that waits goes first.
@@ -165,15 +175,14 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
   if (is_other) estimator_name_ = message.estimator;
   if (!estimator_) return;
   if (is_other) {
-    MakeEstimator(*rig_);
-    last_utime_us_.reset();
-  }  // it looks for the head afresh
+    estimator_ = NewEstimator(*rig_);
+    BeginTrack();
+  }
   estimator_->SetFeedforward(feedforward_);
   if (message.set_search_space) estimator_->SetSearchSpace(*commanded_space_);
   if (message.reset) {
     estimator_->Reset();
-    last_utime_us_.reset();
-    head_was_tracked_ = false;
+    BeginTrack();
   }
 }
 
@@ -221,7 +230,10 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
   TellMissing(message);
   timer_.Enter(Stage::kOther);
   PublishEstimate(message, estimate, received_us);
-  if (estimate) last_utime_us_ = message.utime;
+  if (estimate) {
+    last_utime_us_ = message.utime;
+    newest_pair_us_ = std::max(newest_pair_us_, message.utime);  // of pairs that were any good
+  }
   if (!refused.empty()) context_.status->Rejected(refused, context_.clock->NowUs());
 }
 

@@ -48,7 +48,8 @@ class RecogniserService final : public Service {
   void OnCommand(const recogniser_command_t& message);
 
   void SetRig(const RigDescription& rig);
-  void MakeEstimator(const StereoRig& rig);
+  std::unique_ptr<Estimator> NewEstimator(const StereoRig& rig) const;
+  void BeginTrack();
   void BeginSessionIfPairsJumpBack(std::int64_t utime_us);
   void ProcessWaitingOfOldSession(std::int64_t motion_utime_us);
   void CheckReady();
