@@ -81,13 +81,12 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
   const GainOffset fit = FitPattern(samples, pattern, usable);
   if (fit.count < kFewest) return fit;
   if (!(fit.pattern_rms > kFlat)) return fit;  // nothing to tell places by
-  double gain = fit.gain, offset = fit.offset;
+  double gain = fit.gain;
   if (gain * fit.pattern_rms < kFaintContrast) {
     // Not recognised yet: expected with a modest contrast, never upside down.
     gain = 0.5 / fit.pattern_rms;
-    offset = fit.offset;
   }
-  const auto g = static_cast<float>(gain), o = static_cast<float>(offset);
+  const auto g = static_cast<float>(gain), o = static_cast<float>(fit.offset);
   const float sigma = relative_sigma * static_cast<float>(gain * fit.pattern_rms) + kNoise;
   const float scale = weight / (sigma * sigma), robust = 1 / (4 * sigma * sigma);
   for (std::size_t i = 0; i < face.size(); ++i) {

@@ -49,7 +49,10 @@ class ColorModel {
       bins[color][static_cast<std::size_t>(bin)] += weight;
       total[color] += weight;
     }
-    void Clear() { *this = Counts{}; }
+    void Clear() {
+      for (auto& counts : bins) counts.fill(0);
+      total.fill(0);
+    }
   };
   /// Mixes @p counts in, the first ones more than the later; classes with few counts are left
   /// alone.

@@ -41,7 +41,6 @@ class RefinedEstimator final : public Estimator {
       return std::isfinite(merit) ? merit : -1e9;
     }
   };
-  const Candidate& last() const { return candidate_; }
 
  private:
   void ForgetFace();
