@@ -301,7 +301,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (!good) {
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
-    candidate_ = Recognise(Search());
+    candidate_ = Search();
     // One eye can keep a track, not begin one: its depth is a guess.
     good = BothEyes() && (IsKnownFace(candidate_) || IsNewFace());
     if (!good) colors_ = colors_before_;
