@@ -5,6 +5,7 @@
 #include <charconv>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "common/config/rule.h"
 
@@ -44,6 +45,12 @@ class ConfigWriter {
     char text[32];
     const auto end = std::to_chars(text, text + sizeof text, value).ptr;
     return {text, end};
+  }
+  static YAML::Node Plain(const std::vector<double>& values) {
+    YAML::Node list(YAML::NodeType::Sequence);
+    for (const double value : values) list.push_back(Plain(value));
+    list.SetStyle(YAML::EmitterStyle::Flow);
+    return list;
   }
   template <typename T>
   static const T& Plain(const T& value) {

@@ -1,50 +1,14 @@
 #include "services/recogniser/refined/head_mesh.h"
 
+#include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
 
 namespace visavis {
 namespace {
 
 using Eigen::Vector3f;
 
-/// Unit vertices and triangles (outward, counter-clockwise seen from outside) of an icosahedron.
-void Icosahedron(HeadMesh* mesh) {
-  const float t = 0.5f * (1 + std::sqrt(5.0f));
-  mesh->vertices = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
-                    {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
-  for (Vector3f& v : mesh->vertices) v.normalize();
-  mesh->triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                     {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-}
-
-/// Each triangle into four.
-void Subdivide(HeadMesh* mesh) {
-  std::map<std::pair<int, int>, int> middles;
-  const auto middle = [&](int a, int b) {
-    const auto [it, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)},
-                                                  static_cast<int>(mesh->vertices.size()));
-    if (is_new) {
-      const Vector3f sum =
-          mesh->vertices[static_cast<std::size_t>(a)] + mesh->vertices[static_cast<std::size_t>(b)];
-      mesh->vertices.push_back(sum.normalized());
-    }
-    return it->second;
-  };
-  std::vector<std::array<std::int32_t, 3>> finer;
-  finer.reserve(4 * mesh->triangles.size());
-  for (const auto& [a, b, c] : mesh->triangles) {
-    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    finer.push_back({a, ab, ca});
-    finer.push_back({b, bc, ab});
-    finer.push_back({c, ca, bc});
-    finer.push_back({ab, bc, ca});
-  }
-  mesh->triangles = std::move(finer);
-}
+constexpr float kOnHairline_m = 0.001f;
 
 bool IsFeature(const HeadShape& s, const Vector3f& p) {
   if (p.z() > -0.045f) return false;
@@ -64,24 +28,15 @@ float ContourWeight(const Vector3f& p, HeadPart part) {
   return below_jaw || nape || ear || long_hair ? 0.0f : 1.0f;
 }
 
-void AddNormals(HeadMesh* mesh) {
-  mesh->normals.assign(mesh->vertices.size(), Vector3f::Zero());
-  for (const auto& triangle : mesh->triangles) {
-    const auto at = [&](int i) { return mesh->vertices[static_cast<std::size_t>(triangle[i])]; };
-    const Vector3f n = (at(1) - at(0)).cross(at(2) - at(0));
-    for (const int i : triangle) mesh->normals[static_cast<std::size_t>(i)] += n;
-  }
-  for (Vector3f& n : mesh->normals) n.normalize();
-}
-
 }  // namespace
 
 HeadMesh MeshOf(const HeadSurface& surface, int level) {
   HeadMesh mesh;
-  Icosahedron(&mesh);
-  for (int i = 0; i < level; ++i) Subdivide(&mesh);
+  const Icosphere sphere(level);
+  mesh.vertices = sphere.vertices();
+  mesh.triangles = sphere.triangles();
   for (Vector3f& v : mesh.vertices) v *= surface.Radius(v);
-  AddNormals(&mesh);
+  mesh.normals = VertexNormals(mesh.vertices, mesh.triangles);
   for (const auto& triangle : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       const int a = triangle[i], b = triangle[(i + 1) % 3];
@@ -116,10 +71,9 @@ Hairline HairlineOf(const HeadSurface& surface, int count) {
       p = surface.Radius(d) * d;
       (surface.HairSide(p) > 0 ? high : low) = middle;
     }
-    const Vector3f n = surface.NormalAt(p);
-    const Vector3f& h = surface.hair_normal();
+    if (std::abs(surface.HairSide(p)) > kOnHairline_m) continue;  // bald there
     line.points.push_back(p);
-    line.into_hair.push_back((h - n * n.dot(h)).normalized());
+    line.into_hair.push_back(surface.IntoHair(p));
   }
   return line;
 }

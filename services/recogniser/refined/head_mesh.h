@@ -28,8 +28,8 @@ struct HeadMesh {
 /// @p surface as an icosphere of 10 * 4^@p level + 2 vertices.
 HeadMesh MeshOf(const HeadSurface& surface, int level);
 
-/// Where skin meets hair in front: points of the plane C_h on the surface, and the direction on the
-/// surface that leads into the hair.
+/// Where skin meets hair in front: points on the surface, and the direction on the surface that
+/// leads into the hair. No point where the forehead goes on without hair.
 struct Hairline {
   std::vector<Eigen::Vector3f> points, into_hair;
 };

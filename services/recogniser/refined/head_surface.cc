@@ -38,7 +38,29 @@ HeadSurface::HeadSurface(const HeadShape& shape)
     : shape_(shape),
       hair_normal_(0, -std::sin(shape.hair_tilt_rad), std::cos(shape.hair_tilt_rad)) {}
 
+HeadSurface::HeadSurface(const HeadShape& shape, const HeadTable& table) : HeadSurface(shape) {
+  table_ = std::make_shared<const TabulatedHead>(table);
+}
+
+float HeadSurface::HairSide(const Vector3f& p) const {
+  if (table_ && table_->has_hair_side()) return table_->HairSide(p);
+  return hair_normal_.dot(p) - shape_.hair_offset;
+}
+
+Vector3f HeadSurface::IntoHair(const Vector3f& p) const {
+  const Vector3f n = NormalAt(p);
+  Vector3f towards = hair_normal_;
+  if (table_ && table_->has_hair_side()) {
+    const Vector3f a = n.unitOrthogonal(), b = n.cross(a);
+    constexpr float kStep = 0.004f;
+    towards = (HairSide(p + kStep * a) - HairSide(p - kStep * a)) * a +
+              (HairSide(p + kStep * b) - HairSide(p - kStep * b)) * b;
+  }
+  return (towards - n * n.dot(towards)).normalized();
+}
+
 float HeadSurface::Radius(const Vector3f& direction) const {
+  if (table_) return table_->Radius(direction);
   const HeadShape& s = shape_;
   const float cranium = RayLeaves(direction, s.cranium_centre, s.cranium, s.cranium_exponent);
   const float face = RayLeaves(direction, s.face_centre, s.face, s.face_exponent);
@@ -67,6 +89,7 @@ Vector3f HeadSurface::Onto(const Vector3f& p) const {
 }
 
 Vector3f HeadSurface::NormalAt(const Vector3f& p) const {
+  if (table_) return table_->Normal(p);
   const Vector3f d = p.normalized();
   const Vector3f a = d.unitOrthogonal(), b = d.cross(a);
   constexpr float kStep = 0.03f;

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
+
+#include "services/recogniser/refined/head_table.h"
 
 namespace visavis {
 
@@ -24,18 +27,23 @@ struct HeadShape {
   float mouth_y{0.082f};
 };
 
+/// A head's surface, star-shaped about M's origin: HeadShape's, or one from a table by direction.
 class HeadSurface {
  public:
   explicit HeadSurface(const HeadShape& shape);
+  /// Radii (and, where the table has it, the border of the hair) from @p table; of @p shape the
+  /// places of eyes, brows, nostrils and mouth count, and the plane between hair and skin.
+  /// @throws std::invalid_argument as HeadTable::ValidateOrThrow.
+  HeadSurface(const HeadShape& shape, const HeadTable& table);
 
   const HeadShape& shape() const { return shape_; }
   /// [m] along the unit vector @p direction, hair included.
   float Radius(const Eigen::Vector3f& direction) const;
-  /// [m] of @p p beyond the plane C_h (Eq. 23): positive on the hair's side.
-  float HairSide(const Eigen::Vector3f& p) const {
-    return hair_normal_.dot(p) - shape_.hair_offset;
-  }
-  const Eigen::Vector3f& hair_normal() const { return hair_normal_; }
+  /// [m] of @p p beyond the plane C_h (Eq. 23), or the border that a table has in its place:
+  /// positive on the hair's side.
+  float HairSide(const Eigen::Vector3f& p) const;
+  /// Unit vector along the surface at its point @p p, straight into the hair.
+  Eigen::Vector3f IntoHair(const Eigen::Vector3f& p) const;
   /// The surface point in direction @p p, and its outward unit normal.
   Eigen::Vector3f Onto(const Eigen::Vector3f& p) const;
   Eigen::Vector3f NormalAt(const Eigen::Vector3f& p) const;
@@ -43,6 +51,7 @@ class HeadSurface {
  private:
   HeadShape shape_;
   Eigen::Vector3f hair_normal_;
+  std::shared_ptr<const TabulatedHead> table_;  // null: analytic
 };
 
 }  // namespace visavis

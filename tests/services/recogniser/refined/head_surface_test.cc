@@ -89,7 +89,8 @@ TEST(HeadSurfaceTest, HairSideIsTheDistanceFromTheTiltedPlane) {
   shape.hair_offset = -0.03f;
   const HeadSurface head(shape);
   const Vector3f n(0, -std::sin(0.6f), std::cos(0.6f));
-  EXPECT_LT((head.hair_normal() - n).norm(), 1e-6f);
+  const Vector3f p = head.Onto({0, -0.6f, -0.8f}), normal = head.NormalAt(p);
+  EXPECT_LT((head.IntoHair(p) - (n - normal * normal.dot(n)).normalized()).norm(), 1e-5f);
   const Vector3f on_plane = -0.03f * n + 0.07f * n.unitOrthogonal();
   EXPECT_NEAR(head.HairSide(on_plane), 0, 1e-7f);
   EXPECT_NEAR(head.HairSide(on_plane + 0.012f * n), 0.012f, 1e-7f);

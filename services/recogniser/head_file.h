@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/rule.h"
+#include "services/recogniser/refined/head_geometry.h"
+
+namespace visavis {
+
+/// A head as a YAML file (head.yaml), as an enrolment writes it: radii by direction and where the
+/// face's features are, in the head's own frame M (HeadGeometry), mm.
+struct HeadFile {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("eye_x_mm", &eye_x_mm, InRange(10.0, 60.0, "mm"));
+    a->Visit("eye_y_mm", &eye_y_mm, InRange(-60.0, 80.0, "mm"));
+    a->Visit("brow_y_mm", &brow_y_mm, InRange(-80.0, 80.0, "mm"));
+    a->Visit("nostril_y_mm", &nostril_y_mm, InRange(0.0, 150.0, "mm"));
+    a->Visit("mouth_y_mm", &mouth_y_mm, InRange(0.0, 150.0, "mm"));
+    a->Visit("hair_tilt_deg", &hair_tilt_deg, InRange(-90.0, 90.0, "deg"));
+    a->Visit("hair_offset_mm", &hair_offset_mm, InRange(-150.0, 150.0, "mm"));
+    a->Visit("origin_mm", &origin_mm);
+    a->Visit("radii_mm", &radii_mm);
+    a->Visit("hair_side_mm", &hair_side_mm);
+  }
+  /// @throws FieldError naming key, value and rule.
+  void ValidateOrThrow() const;
+
+  double eye_x_mm{31}, eye_y_mm{13}, brow_y_mm{3.5}, nostril_y_mm{59}, mouth_y_mm{82};
+  double hair_tilt_deg{34};    ///< plane between hair and skin, where hair_side_mm is empty
+  double hair_offset_mm{-29};  ///< hair where -y sin(tilt) + z cos(tilt) exceeds it
+  std::vector<double> origin_mm{0, 0, 0};  ///< in M, of the frame that poses are reported in
+  std::vector<double> radii_mm;            ///< HeadTable::radii_m
+  std::vector<double> hair_side_mm;        ///< HeadTable::hair_side_m, or empty
+};
+
+/// @throws ConfigError: one line with file, line, key, value and rule.
+HeadGeometry LoadHeadFile(const std::string& filename);
+
+/// What LoadHeadFile reads back: @p head at the icosphere's @p level (4: 2562 radii), to 0.001 mm.
+/// @throws std::runtime_error naming a file that cannot be written.
+void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int level = 4);
+
+}  // namespace visavis

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "services/recogniser/refined/head_surface.h"
+
+namespace visavis {
+
+/// The head that the refined estimator looks for. Its own frame M has the eyes where the generic
+/// adult has them (HeadShape::eye_y): what the estimator knows about faces is laid out in it.
+/// Poses are reported in the head's frame R, with M's axes and an origin of its own.
+struct HeadGeometry {
+  HeadSurface surface{HeadShape{}};
+  Eigen::Vector3d p_MR_m{0, 0, 0};  ///< R's origin in M
+};
+
+/// @p surface by direction, for the level of so many vertices (see HeadTable); with the border of
+/// its hair.
+HeadTable TableOf(const HeadSurface& surface, int level);
+
+}  // namespace visavis
