@@ -87,7 +87,7 @@ void RecogniserService::SetRig(const RigDescription& description) {
 std::unique_ptr<Estimator> RecogniserService::NewEstimator(const StereoRig& rig) const {
   std::unique_ptr<Estimator> estimator;
   if (estimator_name_ == "refined") {
-    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), HeadShape{}, rig);
+    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), rig);
   } else {
     estimator =
         std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head, rig);

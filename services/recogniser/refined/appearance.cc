@@ -38,6 +38,7 @@ void SampleFace(const FacePoints& face, const EyeView& eye, const EyePose& pose,
                 float min_facing, FaceSamples* samples) {
   const EyeGeometry& g = *eye.geometry;
   const Eigen::Matrix3f R_CE = g.R_EC.transpose();
+  samples->Hold(face.size());
   for (std::size_t i = 0; i < face.size(); ++i) {
     samples->seen[i] = 0;
     const Vector3f view = face.points[i] - pose.p_ME;

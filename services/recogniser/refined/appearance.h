@@ -13,6 +13,15 @@ namespace visavis {
 struct FaceSamples {
   explicit FaceSamples(std::size_t size) : value(size), facing(size), slope(size), seen(size) {}
 
+  /// Room for at least @p size points.
+  void Hold(std::size_t size) {
+    if (value.size() >= size) return;
+    value.resize(size);
+    facing.resize(size);
+    slope.resize(size);
+    seen.resize(size);
+  }
+
   std::vector<float> value, facing;    ///< facing: cosine, 1 where turned straight to the eye
   std::vector<Eigen::Vector3f> slope;  ///< change of value with the point's place in C [1/m]
   std::vector<unsigned char> seen;     ///< in the picture and turned to the eye

@@ -61,7 +61,7 @@ void ContourTerm::FindSilhouette(const EyePose& pose) {
 
 void ContourTerm::Measure(const EyeView& eye, const EyePose& pose, const Vector3f& p_M,
                           const Vector3f& n_M, Edge edge, int reach, float weight,
-                          PoseEquations* equations, ContourFit* fit) const {
+                          PoseEquations* equations, ContourFit* fit) {
   const EyeGeometry& g = *eye.geometry;
   const Vector3f p = pose.InEye(p_M), n = pose.R_EM * n_M;
   if (p.z() < 0.1f) return;
@@ -99,6 +99,9 @@ void ContourTerm::Measure(const EyeView& eye, const EyePose& pose, const Vector3
   fit->count += 1;
   fit->sum_square += std::min(25.0f, mean * mean);
   const Vector3f slope_E(nu * g.fx * iz, nv * g.fy * iz, -(nu * g.fx * x + nv * g.fy * y) * iz);
+  if (edge != Edge::kHairline)
+    outline_.push_back({p_M, g.R_EC.transpose() * slope_E, mean,
+                        weight / (variance + kMinVariance) / (1 + mean * mean / kRobust_px2)});
   equations->Add(g.R_EC.transpose() * slope_E, pose.R_CM * p_M, mean,
                  weight / (variance + kMinVariance) / (1 + mean * mean / kRobust_px2));
 }
@@ -108,6 +111,7 @@ void ContourTerm::Add(const EyeView& eye, const EyePose& pose, int reach_px, flo
   if (!eye.scores->has_color()) return;
   const int reach = std::clamp(reach_px, 2, kMaxReach);
   FindSilhouette(pose);
+  outline_.clear();
   for (const Candidate& c : silhouette_) {
     if (c.distance < 0 || c.weight <= 0) continue;
     Measure(eye, pose, c.p_M, c.n_M, c.part == HeadPart::kHair ? Edge::kHair : Edge::kSkin, reach,

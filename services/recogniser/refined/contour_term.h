@@ -17,6 +17,14 @@ struct ContourFit {
   double rms_px() const { return count > 0 ? std::sqrt(sum_square / count) : 0; }
 };
 
+/// One place of the outline: the surface there should move so that slope . movement = distance.
+struct OutlineMeasurement {
+  Eigen::Vector3f p_M;
+  Eigen::Vector3f slope;  ///< in C [px/m]
+  float distance;         ///< outward [px]
+  float weight;           ///< inverse variance
+};
+
 /// Silhouette and hairline against the colours along their normals: at each point of the model's
 /// contour the place where inside turns to outside is found as a posterior over the pixels along
 /// the normal (log-likelihood ratios summed up), with its mean and variance.
@@ -27,6 +35,9 @@ class ContourTerm {
   /// Adds what @p eye measures of a head at @p pose. @param reach_px how far along the normals.
   void Add(const EyeView& eye, const EyePose& pose, int reach_px, float outline_weight,
            float hairline_weight, PoseEquations* equations, ContourFit* fit);
+
+  /// The outline's measurements of the last Add().
+  const std::vector<OutlineMeasurement>& outline() const { return outline_; }
 
  private:
   struct Candidate {
@@ -41,7 +52,8 @@ class ContourTerm {
   void FindSilhouette(const EyePose& pose);
   void Measure(const EyeView& eye, const EyePose& pose, const Eigen::Vector3f& p_M,
                const Eigen::Vector3f& n_M, Edge edge, int reach, float weight,
-               PoseEquations* equations, ContourFit* fit) const;
+               PoseEquations* equations, ContourFit* fit);
+  std::vector<OutlineMeasurement> outline_;
 
   HeadMesh mesh_;
   Hairline hairline_;

@@ -27,9 +27,31 @@ void FaceTexture::Move(const RigidTransform& X_MN) {
 void FaceTexture::Forget() {
   learned_ = {};
   points_ = generic_;
-  for (auto& w : weight_) std::fill(w.begin(), w.end(), 0.0f);
-  for (auto& v : value_) std::fill(v.begin(), v.end(), 0.0f);
-  std::fill(known_.begin(), known_.end(), static_cast<unsigned char>(0));
+  for (auto& w : weight_) w.assign(generic_.size(), 0.0f);
+  for (auto& v : value_) v.assign(generic_.size(), 0.0f);
+  known_.assign(generic_.size(), 0);
+}
+
+void FaceTexture::Remember(const LearnedFace& face) {
+  points_ = {};
+  points_.points = face.points;
+  points_.normals = face.normals;
+  value_ = face.value;
+  for (auto& w : weight_) w.assign(face.points.size(), 1 / kMinRate);
+  known_.assign(face.points.size(), 1);
+  learned_.fill(true);
+}
+
+LearnedFace FaceTexture::Learned() const {
+  LearnedFace face;
+  for (std::size_t i = 0; i < known_.size(); ++i) {
+    if (!known_[i]) continue;
+    face.points.push_back(points_.points[i]);
+    face.normals.push_back(points_.normals[i]);
+    for (std::size_t band = 0; band < kNumBands; ++band)
+      face.value[band].push_back(value_[band][i]);
+  }
+  return face;
 }
 
 void FaceTexture::Learn(Band band, const FaceSamples& samples) {

@@ -7,6 +7,13 @@
 
 namespace visavis {
 
+/// A face as it was learned and is to be remembered.
+struct LearnedFace {
+  std::vector<Eigen::Vector3f> points, normals;  ///< M frame, m
+  /// Brightness there in each band, arbitrary units.
+  std::array<std::vector<float>, kNumBands> value;
+};
+
 /// How this face looks, learned from poses that were good: brightness at points in each band, in
 /// the units of the first picture that the band is learned from. The points begin on the generic
 /// head's surface.
@@ -15,6 +22,9 @@ class FaceTexture {
   explicit FaceTexture(const FacePoints& face);
 
   void Forget();
+  /// Takes over @p face, as if it had been learned for long.
+  void Remember(const LearnedFace& face);
+  LearnedFace Learned() const;
   /// The points in the M frame.
   const FacePoints& points() const { return points_; }
   /// Moves all points together: those at p go to @p X_MN p.

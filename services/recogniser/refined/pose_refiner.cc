@@ -34,6 +34,16 @@ const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
   return samples_[eye];
 }
 
+const std::vector<OutlineMeasurement>& PoseRefiner::Outline(const StereoView& view, std::size_t eye,
+                                                            const RigidTransform& X_CM,
+                                                            int reach_px) {
+  PoseEquations ignored;
+  ContourFit ignored_too;
+  contours_.Add(view[eye], EyePose(*view[eye].geometry, X_CM), reach_px, 1, 0, &ignored,
+                &ignored_too);
+  return contours_.outline();
+}
+
 void PoseRefiner::AddContours(const StereoView& view, const std::array<EyePose, 2>& poses,
                               int reach_px, double weight, PoseEquations* equations,
                               ContourFit* fit) {

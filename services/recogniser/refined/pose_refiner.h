@@ -37,6 +37,9 @@ struct Refined {
   double texture_ncc{0};                   ///< mean of the eyes; 0: not learned
   double stereo_ncc{0};                    ///< correlation of both eyes' views; 0: one eye
   double last_step_m{0}, last_step_rad{0};
+
+  /// Whether it had come to rest: what still moves is on its way, not there.
+  bool converged() const { return last_step_m < 0.004 && last_step_rad < 0.04; }
 };
 
 /// Gauss-Newton on a pose over contours, the generic face, the learned texture and the agreement of
@@ -54,6 +57,10 @@ class PoseRefiner {
   /// What the generic model alone says of the head at @p X_CM: equations of a correction [dp; w] in
   /// the M frame, X_CM' = X_CM [Exp(w), dp].
   PoseEquations Generic(const StereoView& view, const RigidTransform& X_CM);
+
+  /// Where eye @p eye sees the outline of the head at @p X_CM.
+  const std::vector<OutlineMeasurement>& Outline(const StereoView& view, std::size_t eye,
+                                                 const RigidTransform& X_CM, int reach_px);
 
   /// Samples of the face under @p X_CM, eye by eye, for learning.
   const FaceSamples& Sample(const StereoView& view, std::size_t eye, const RigidTransform& X_CM,

@@ -9,6 +9,7 @@ namespace {
 constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
 constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
+constexpr int kMoreRounds = 2;  ///< of iterations, where a tracked pose has not come to rest
 constexpr int kLeastBox_px = 32;
 constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
@@ -26,10 +27,9 @@ double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + s
 
 }  // namespace
 
-RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadShape& head,
-                                   const StereoRig& rig)
+RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const StereoRig& rig)
     : settings_(settings),
-      surface_(head),
+      surface_(settings.head.surface),
       mesh_(MeshOf(surface_, kMeshLevel)),
       face_(FacePointsOf(surface_, kFaceSpacing_m)),
       pair_(rig, MiddleDistance(settings.space)),
@@ -47,6 +47,7 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadSh
 
 void RefinedEstimator::Reset() {
   ForgetFace();
+  RememberEnrolled();
   for (ColorModel& colors : colors_) colors.Reset();
   centre_.reset();
   population_ = RealPopulation(settings_.refined.population, settings_.seed);
@@ -62,7 +63,15 @@ void RefinedEstimator::Reset() {
 void RefinedEstimator::ForgetFace() {
   texture_.Forget();
   anchor_.Forget();
+  is_enrolled_ = false;
   strange_in_a_row_ = 0;
+}
+
+void RefinedEstimator::RememberEnrolled() {
+  if (!settings_.face || is_enrolled_) return;
+  ForgetFace();
+  texture_.Remember(*settings_.face);
+  is_enrolled_ = true;
 }
 
 void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
@@ -133,6 +142,9 @@ RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X
 RefinedEstimator::Candidate RefinedEstimator::Track() {
   const FaceTexture* texture = texture_.learned() ? &texture_ : nullptr;
   Candidate best = RefineFrom(*X_CM_, texture, settings_.refined.iterations, 9);
+  for (int k = 0; k < kMoreRounds && !best.refined.converged(); ++k) {
+    best = RefineFrom(best.refined.X_CM, texture, settings_.refined.iterations, 9);
+  }
   estimate_.evaluations += 1;
   const auto fitness = [&](const Vector6d& phi) {
     ++estimate_.evaluations;
@@ -167,7 +179,7 @@ bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
 // What a face must show whoever it is.
 bool RefinedEstimator::IsFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  return IsPlausible(c.refined.X_CM) &&
+  return IsPlausible(c.refined.X_CM) && c.refined.converged() &&
          c.score.ncc > (c.score.has_color ? e.lock_ncc : e.lock_gray_ncc) && BothEyes() &&
          c.refined.stereo_ncc > e.lock_stereo_ncc &&
          (!c.score.has_color ||
@@ -175,10 +187,10 @@ bool RefinedEstimator::IsFace(const Candidate& c) const {
 }
 
 // What the face that was learned must show.
-bool RefinedEstimator::IsKnownFace(const Candidate& c) const {
+bool RefinedEstimator::IsKnownFace(const Candidate& c, double least_texture_ncc) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  return IsPlausible(c.refined.X_CM) && texture_.learned() &&
-         c.refined.texture_ncc > e.keep_texture_ncc && c.score.ncc > e.keep_ncc &&
+  return IsPlausible(c.refined.X_CM) && texture_.learned() && c.refined.converged() &&
+         c.refined.texture_ncc > least_texture_ncc && c.score.ncc > e.keep_ncc &&
          (!BothEyes() || c.refined.stereo_ncc > e.keep_stereo_ncc);
 }
 
@@ -246,7 +258,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
 
 void RefinedEstimator::Learn() {
   if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
-  if (estimate_.status != TrackStatus::kTracking) return;
+  if (estimate_.status != TrackStatus::kTracking || is_enrolled_) return;
   for (const Band band : {kFineBand, kCoarseBand}) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (view_[i].seen())
@@ -281,6 +293,7 @@ void RefinedEstimator::FollowHead() {
 
 const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const CameraStep& step,
                                           StageTimer* timer) {
+  const EvidenceConfig& e = settings_.refined.evidence;
   timer->Enter(Stage::kFeedforward);
   Feedforward(step);
   estimate_.generations = estimate_.evaluations = 0;
@@ -292,7 +305,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (tracked) {
     timer->Enter(Stage::kRefinement);
     candidate_ = Track();
-    good = texture_.learned() ? IsKnownFace(candidate_) : IsFace(candidate_);
+    good = texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_);
     if (!good) {
       timer->Enter(Stage::kMap);
       BuildMaps(nullptr);
@@ -303,14 +316,14 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     population_.Renew(0.3);
     candidate_ = Search();
     // One eye can keep a track, not begin one: its depth is a guess.
-    good = BothEyes() && (IsKnownFace(candidate_) || IsNewFace());
+    good = BothEyes() && (IsKnownFace(candidate_, FindTextureNcc()) || IsNewFace());
     if (!good) colors_ = colors_before_;
   } else {
     strange_in_a_row_ = 0;
   }
   timer->Enter(Stage::kOther);
   Judge(good);
-  if (good && texture_.learned()) MoveAnchor();
+  if (good && texture_.learned() && !is_enrolled_) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
   estimate_.X_CM = X_CM_;

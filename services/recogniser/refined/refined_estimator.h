@@ -19,13 +19,15 @@ namespace visavis {
 /// by Gauss-Newton over contours, the face's pattern, learned texture and left-right agreement.
 class RefinedEstimator final : public Estimator {
  public:
-  RefinedEstimator(const RefinedSettings& settings, const HeadShape& head, const StereoRig& rig);
+  RefinedEstimator(const RefinedSettings& settings, const StereoRig& rig);
 
   const Estimate& Process(const StereoFrame& frame, const CameraStep& step,
                           StageTimer* timer) override;
   void Reset() override;
   void SetFeedforward(FeedforwardMode mode) override { settings_.feedforward = mode; }
   void SetSearchSpace(const SearchSpace& space) override;
+  const std::array<ColorModel, 2>& colors() const { return colors_; }
+  const FaceTexture& texture() const { return texture_; }
   const std::vector<Individual>& population() const override { return population_.individuals(); }
   std::int64_t total_generations() const override { return total_generations_; }
 
@@ -44,6 +46,7 @@ class RefinedEstimator final : public Estimator {
 
  private:
   void ForgetFace();
+  void RememberEnrolled();
   void CentreOn(const Eigen::Vector3d& p_CM);
   void FollowHead();
   void TakePictures(const StereoFrame& frame);
@@ -67,7 +70,11 @@ class RefinedEstimator final : public Estimator {
   bool BothEyes() const { return view_[0].seen() && view_[1].seen(); }
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
-  bool IsKnownFace(const Candidate& candidate) const;
+  bool IsKnownFace(const Candidate& candidate, double least_texture_ncc) const;
+  double FindTextureNcc() const {
+    const EvidenceConfig& e = settings_.refined.evidence;
+    return is_enrolled_ ? e.enrolled_texture_ncc : e.keep_texture_ncc;
+  }
   bool IsNewFace();
   void Judge(bool good);
   void Learn();
@@ -82,6 +89,7 @@ class RefinedEstimator final : public Estimator {
   MeshFitness coarse_fitness_, fitness_;
   PoseRefiner refiner_;
   FaceTexture texture_;
+  bool is_enrolled_{false};  ///< texture_ is the enrolled face's, in its own fixed frame
   HeadAnchor anchor_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
   std::array<bool, 2> colors_started_{};

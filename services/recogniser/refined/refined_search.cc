@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastGlance = -0.5;  ///< below: not worth an evaluation
 constexpr double kHopeless = -3;       ///< fitness then
 constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
-constexpr double kTurn_rad = 0.3;
+constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17;
 constexpr int kFirstIterations = 4;  ///< of each start
 constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
@@ -102,13 +102,27 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
 std::optional<RefinedEstimator::Candidate> RefinedEstimator::KnownAmongCandidates() {
   std::optional<Candidate> best;
   if (!texture_.learned()) return best;
+  const auto consider = [&](const RigidTransform& X) {
+    const Candidate known = RefineFrom(X, &texture_, settings_.refined.search_iterations, 7);
+    if (IsKnownFace(known, FindTextureNcc()) &&
+        (!best || known.refined.texture_ncc > best->refined.texture_ncc))
+      best = known;
+  };
   for (const Candidate& candidate : candidates_) {
     const RigidTransform& X = candidate.refined.X_CM;
     if (!X.matrix().allFinite() || candidate.score.total() < candidates_[0].score.total() - 1)
       continue;
-    const Candidate known = RefineFrom(X, &texture_, settings_.refined.search_iterations, 7);
-    if (IsKnownFace(known) && (!best || known.refined.texture_ncc > best->refined.texture_ncc))
-      best = known;
+    consider(X);
+  }
+  // The generic face may have been fitted askew, beyond what the texture reaches.
+  for (std::size_t i = 0; !best && i < std::min(candidates_.size(), kTurnedPlaces); ++i) {
+    const RigidTransform X = candidates_[i].refined.X_CM;
+    for (const double turn : {kAskew_rad, -kAskew_rad}) {
+      for (const double other : {kAskew_rad, 0.0, -kAskew_rad}) {
+        consider(X * MakeTransform(ExpRotation({turn, other, 0}), Eigen::Vector3d::Zero()));
+      }
+      consider(X * MakeTransform(ExpRotation({0, turn, 0}), Eigen::Vector3d::Zero()));
+    }
   }
   return best;
 }
@@ -173,7 +187,7 @@ RefinedEstimator::Candidate RefinedEstimator::Recognise(const Candidate& candida
   if (!texture_.learned()) return candidate;
   const Candidate known =
       RefineFrom(candidate.refined.X_CM, &texture_, settings_.refined.search_iterations, 7);
-  return IsKnownFace(known) ? known : candidate;
+  return IsKnownFace(known, FindTextureNcc()) ? known : candidate;
 }
 
 }  // namespace visavis

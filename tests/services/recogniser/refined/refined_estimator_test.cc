@@ -20,7 +20,7 @@ class RefinedEstimatorTest : public ::testing::Test {
  protected:
   RefinedEstimatorTest()
       : scene_(TestRig()),
-        estimator_(RecogniserConfig{}.RefinedSettings(), HeadShape{}, TestRig()) {
+        estimator_(RecogniserConfig{}.RefinedSettings(), TestRig()) {
     timer_.Restart();
   }
 
@@ -124,7 +124,7 @@ TEST_F(RefinedEstimatorTest, ATrackedFrameAllocatesNothing) {
 TEST_F(RefinedEstimatorTest, ResetForgetsTheHeadAndTheSameFramesGiveTheSamePoses) {
   std::vector<Eigen::Matrix4d> first;
   for (int i = 0; i < 4; ++i) first.push_back(SeeHeadAt(kPlace).X_CM->matrix());
-  RefinedEstimator again(RecogniserConfig{}.RefinedSettings(), HeadShape{}, TestRig());
+  RefinedEstimator again(RecogniserConfig{}.RefinedSettings(), TestRig());
   StereoFrame frame;
   frame.right = scene_.picture(0);
   frame.left = scene_.picture(1);

@@ -1,0 +1,155 @@
+#include "services/recogniser/refined/head_bundle.h"
+
+#include <cmath>
+
+#include "common/core/check.h"
+
+namespace visavis {
+namespace {
+
+constexpr int kShapeLevel = 4, kMeshLevel = 4;
+constexpr double kFaceSpacing_m = 0.005;
+constexpr double kBoxRadius_m = 0.17;
+constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
+constexpr float kMinFacing = 0.6f;
+constexpr ShapeEquations::Prior kPrior{0.010, 0.0008};
+/// Neighbouring points and both bands see the same noise and the same errors.
+constexpr double kIndependence = 0.1, kOutlineIndependence = 0.3;
+constexpr float kRelativeSigma = 0.35f, kNoise = 0.5f;  ///< as in the refiner: contrast, levels
+
+}  // namespace
+
+HeadBundle::Model::Model(const RefinerConfig& config, const HeadSurface& head)
+    : surface(head),
+      mesh(MeshOf(surface, kMeshLevel)),
+      face(FacePointsOf(surface, kFaceSpacing_m)),
+      refiner(config, surface, mesh, face),
+      texture(face) {}
+
+HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double distance_m,
+                       const HeadGeometry& head, const std::array<ColorModel, 2>& colors)
+    : config_(config),
+      start_(head),
+      start_table_(TableOf(head.surface, kShapeLevel)),
+      pair_(rig, distance_m),
+      colors_(colors),
+      scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
+              ScoreMap(pair_.eye(1).width, pair_.eye(1).height)},
+      bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
+             BandImages(pair_.eye(1).width, pair_.eye(1).height)},
+      shape_(kShapeLevel),
+      displaced_(start_table_.radii_m.size()),
+      model_(std::make_unique<Model>(config, head.surface)) {}
+
+void HeadBundle::Add(const StereoFrame& frame, const RigidTransform& X_CM) {
+  View& view = views_.emplace_back();
+  view.X_CM = X_CM;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto picture = pair_.Picture(frame, i);
+    VISAVIS_THROW_UNLESS(picture.has_value(), i);
+    view.pictures[i] = *picture;
+    view.pixels[i].assign(picture->data, picture->data + picture->size);
+  }
+}
+
+void HeadBundle::Look(const View& view) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    ImageView picture = view.pictures[i];
+    picture.data = view.pixels[i].data();
+    const PixelBox box = pair_.BoxAround(i, view.X_CM, kBoxRadius_m);
+    scores_[i].Build(picture, colors_[i], box);
+    bands_[i].Build(picture, box);
+    view_[i] = {&pair_.eye(i), &scores_[i], &bands_[i]};
+  }
+}
+
+const FaceTexture& HeadBundle::LearnTexture() {
+  FaceTexture& texture = model_->texture;
+  texture.Forget();
+  for (const View& view : views_) {
+    Look(view);
+    for (const Band band : {kFineBand, kCoarseBand}) {
+      for (std::size_t eye = 0; eye < 2; ++eye) {
+        texture.Learn(band, model_->refiner.Sample(view_, eye, view.X_CM, band, texture.points()));
+      }
+    }
+  }
+  return texture;
+}
+
+HeadBundle::Agreement HeadBundle::RefinePoses() {
+  Agreement sum;
+  for (View& view : views_) {
+    Look(view);
+    const Refined refined =
+        model_->refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
+    if (refined.X_CM.matrix().allFinite()) view.X_CM = refined.X_CM;
+    const double share = 1 / static_cast<double>(views_.size());
+    sum.texture_ncc += share * refined.texture_ncc;
+    sum.stereo_ncc += share * refined.stereo_ncc;
+    sum.contour_px += share * refined.contour.rms_px();
+  }
+  return sum;
+}
+
+// A surface point that moves by m along its direction d from M's origin changes what an eye sees
+// there by slope . R_CM d m.
+void HeadBundle::AddShape(const View& view, Band band) {
+  const FacePoints& points = model_->texture.points();
+  const std::vector<float>& pattern = model_->texture.pattern(band);
+  const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
+  std::array<FaceSamples, 2> samples{FaceSamples(points.size()), FaceSamples(points.size())};
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    FaceSamples& s = samples[eye];
+    SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), band, kMinFacing, &s);
+    const GainOffset fit = FitPattern(s, pattern, model_->texture.known());
+    const auto gain = static_cast<float>(fit.gain), offset = static_cast<float>(fit.offset);
+    const float sigma = kRelativeSigma * gain * static_cast<float>(fit.pattern_rms) + kNoise;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!s.seen[i]) continue;
+      const Eigen::Vector3f d = points.points[i].normalized();
+      const float residual = gain * pattern[i] + offset - s.value[i];
+      const float robust = 1 + residual * residual / (4 * sigma * sigma);
+      shape_.Add(d, static_cast<double>(s.slope[i].dot(R_CM * d)), static_cast<double>(residual),
+                 kIndependence / static_cast<double>(sigma * sigma * robust));
+    }
+  }
+}
+
+void HeadBundle::AddOutline(const View& view) {
+  const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    for (const OutlineMeasurement& m :
+         model_->refiner.Outline(view_, eye, view.X_CM, kOutlineReach_px)) {
+      const Eigen::Vector3f d = m.p_M.normalized();
+      shape_.Add(d, static_cast<double>(m.slope.dot(R_CM * d)), static_cast<double>(m.distance),
+                 kOutlineIndependence * static_cast<double>(m.weight));
+    }
+  }
+}
+
+void HeadBundle::MoveSurface() {
+  const std::vector<float> movement = shape_.Solve(displaced_, kPrior);
+  HeadTable table = start_table_;
+  for (std::size_t i = 0; i < displaced_.size(); ++i) {
+    displaced_[i] += movement[i];
+    table.radii_m[i] += displaced_[i];
+  }
+  model_ = std::make_unique<Model>(config_, HeadSurface(start_.surface.shape(), table));
+}
+
+HeadBundle::Agreement HeadBundle::Round() {
+  LearnTexture();
+  const Agreement agreement = RefinePoses();
+  LearnTexture();
+  shape_.Clear();
+  for (const View& view : views_) {
+    Look(view);
+    for (const Band band : {kFineBand, kCoarseBand}) AddShape(view, band);
+    AddOutline(view);
+  }
+  MoveSurface();
+  return agreement;
+}
+
+}  // namespace visavis
