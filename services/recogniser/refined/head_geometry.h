@@ -14,6 +14,9 @@ struct HeadGeometry {
   Eigen::Vector3d p_MR_m{0, 0, 0};  ///< R's origin in M
 };
 
+/// Between the pupils of the generic adult, on its surface: where every head has them in M [m].
+Eigen::Vector3d AdultEyes();
+
 /// @p surface by direction, for the level of so many vertices (see HeadTable); with the border of
 /// its hair.
 HeadTable TableOf(const HeadSurface& surface, int level);

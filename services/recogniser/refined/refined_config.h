@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/config/rule.h"
 #include "services/recogniser/estimator.h"
@@ -38,6 +40,27 @@ struct EvidenceConfig {
   int strange_frames{3};         ///< so often a face other than the learned one: learn it anew
 };
 
+/// Which head is looked for.
+struct HeadChoice {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("shape", &shape, OneOf({"adult", "ellipsoid", "sphere"}));
+    a->Visit("file", &file);
+    a->Visit("scale", &scale, InRange(1e-9, 1e9));
+    a->Visit("y_up", &y_up);
+    a->Visit("origin_m", &origin_m);
+  }
+  /// adult: the generic one. ellipsoid, sphere: the published estimator's sizes (head.*), coarser.
+  std::string shape{"adult"};
+  /// In its place: a head.yaml, or a closed mesh labelled by the names of its materials; or empty.
+  std::string file;
+  double scale{1};  ///< of a mesh: metres per unit of the file
+  bool y_up{true};  ///< of a mesh: the file's axes are x right, y up, z to the viewer; false: M's
+  /// Of a mesh: origin of the frame that poses are reported in, in the scaled file's own axes.
+  /// Empty: the generic adult's, from the eyes.
+  std::vector<double> origin_m;
+};
+
 /// All that the refined estimator can be set to.
 struct RefinedConfig {
   template <typename A>
@@ -51,6 +74,7 @@ struct RefinedConfig {
     a->Visit("population", &population);
     a->Visit("refiner", &refiner);
     a->Visit("evidence", &evidence);
+    a->Visit("head", &head);
   }
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
   int search_shots{3000};       ///< poses glanced at, in a frame without
@@ -61,6 +85,7 @@ struct RefinedConfig {
   RealGaConfig population;
   RefinerConfig refiner;
   EvidenceConfig evidence;
+  HeadChoice head;
 };
 
 /// What a refined estimator is made with.

@@ -14,22 +14,28 @@ constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
 
 /// From the normal equations, and what they cannot know: the head is not shaped as the model. The
-/// head frame's constant offset is a matter of definition and not in it.
-Matrix6d Covariance(const Matrix6d& information) {
+/// head frame's constant offset is a matter of definition and not in it. @p p_MR_C: R's origin from
+/// M's, in C; its position hangs on the rotation with that lever.
+Matrix6d Covariance(const Matrix6d& information, const Eigen::Vector3d& p_MR_C) {
   Matrix6d covariance = information.inverse();
   covariance.diagonal().head<3>().array() += kShape_m * kShape_m;
   covariance.diagonal().tail<3>().array() += kShape_rad * kShape_rad;
-  return covariance;
+  Matrix6d lever = Matrix6d::Identity();
+  lever.topRightCorner<3, 3>() << 0, p_MR_C.z(), -p_MR_C.y(),  //
+      -p_MR_C.z(), 0, p_MR_C.x(),                              //
+      p_MR_C.y(), -p_MR_C.x(), 0;
+  return lever * covariance * lever.transpose();
 }
 
 double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + space.max[2]); }
 
 }  // namespace
 
-RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadShape& head,
+RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head,
                                    const StereoRig& rig)
     : settings_(settings),
-      surface_(head),
+      surface_(head.surface),
+      X_MR_(MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m)),
       mesh_(MeshOf(surface_, kMeshLevel)),
       face_(FacePointsOf(surface_, kFaceSpacing_m)),
       pair_(rig, MiddleDistance(settings.space)),
@@ -53,7 +59,8 @@ void RefinedEstimator::Reset() {
   population_.SetSpace(settings_.space);
   population_.Restart();
   colors_started_ = {};
-  X_CM_ = settings_.start_X_CM;
+  X_CM_.reset();
+  if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
   estimate_ = Estimate{};
   frames_ = 0;
   good_in_a_row_ = bad_in_a_row_ = 0;
@@ -313,10 +320,11 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (good && texture_.learned()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
-  estimate_.X_CM = X_CM_;
+  estimate_.X_CM = *X_CM_ * X_MR_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
-  estimate_.covariance = Covariance(candidate_.refined.information);
+  estimate_.covariance =
+      Covariance(candidate_.refined.information, X_CM_->linear() * X_MR_.translation());
   total_generations_ += estimate_.generations;
   if (good) Learn();
   ++frames_;

@@ -9,6 +9,7 @@
 #include "services/recogniser/estimator.h"
 #include "services/recogniser/refined/color_model.h"
 #include "services/recogniser/refined/head_anchor.h"
+#include "services/recogniser/refined/head_geometry.h"
 #include "services/recogniser/refined/mesh_fitness.h"
 #include "services/recogniser/refined/refined_config.h"
 #include "services/recogniser/refined/working_pair.h"
@@ -19,13 +20,14 @@ namespace visavis {
 /// by Gauss-Newton over contours, the face's pattern, learned texture and left-right agreement.
 class RefinedEstimator final : public Estimator {
  public:
-  RefinedEstimator(const RefinedSettings& settings, const HeadShape& head, const StereoRig& rig);
+  RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head, const StereoRig& rig);
 
   const Estimate& Process(const StereoFrame& frame, const CameraStep& step,
                           StageTimer* timer) override;
   void Reset() override;
   void SetFeedforward(FeedforwardMode mode) override { settings_.feedforward = mode; }
   void SetSearchSpace(const SearchSpace& space) override;
+  /// In M (see HeadGeometry), while the poses of estimates and settings are those of R.
   const std::vector<Individual>& population() const override { return population_.individuals(); }
   std::int64_t total_generations() const override { return total_generations_; }
 
@@ -76,6 +78,7 @@ class RefinedEstimator final : public Estimator {
 
   RefinedSettings settings_;
   const HeadSurface surface_;
+  const RigidTransform X_MR_;  ///< the frame that poses are reported in
   const HeadMesh mesh_;
   const FacePoints face_;
   WorkingPair pair_;
