@@ -9,8 +9,8 @@
 
 namespace visavis {
 
-/// A head's surface in one piece: corners at the same place joined, each triangle with its label.
-/// Clothes are left out.
+/// A head's surface in one piece: corners at the same place (to 2 um) joined, each triangle with
+/// its label. Clothes are left out.
 struct JoinedMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<std::array<std::int32_t, 3>> triangles;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "services/recogniser/joined_mesh.h"
 #include "services/recogniser/refined/head_mesh.h"
 #include "tests/support/head_obj.h"
 #include "tests/support/mesh_scene.h"
@@ -106,6 +107,24 @@ TEST_F(MeshHeadTest, EarsAndNeckYieldToWhatElseIsThere) {
     return is_ear(p) ? std::string("ear") : AdultMaterial(p);
   };
   ExpectAlike(Load(how).surface, SharedAdultHead().surface, 0.005, 0.001);
+}
+
+TEST_F(MeshHeadTest, CornersAThousandthOfAMillimetreApartAreOne) {
+  LabelledPart part;
+  part.label = Label::kSkin;
+  const std::array<Eigen::Vector3f, 4> corners = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  std::uint32_t n = 0;
+  for (const auto& t : {std::array{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) {  // a tetrahedron
+    for (const int i : t) {
+      part.vertices.push_back(corners[static_cast<std::size_t>(i)] +
+                              Vector3f::Constant(1e-7f * static_cast<float>(n % 10)));
+      ++n;
+    }
+    part.triangles.push_back({n - 3, n - 2, n - 1});
+  }
+  const JoinedMesh mesh = JoinParts({part});
+  EXPECT_EQ(mesh.vertices.size(), 4u);
+  EXPECT_EQ(mesh.triangles.size(), 4u);
 }
 
 TEST_F(MeshHeadTest, AMeshThatIsNotClosedIsRefused) {
