@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "common/config/config_reader.h"
 #include "common/config/config_writer.h"
@@ -11,6 +12,10 @@ namespace visavis {
 namespace {
 
 double Mm(float metres) { return std::round(1e6 * static_cast<double>(metres)) / 1e3; }
+constexpr std::size_t kFewestFacePoints = 100, kMostFacePoints = 5000;
+constexpr double kFarthest_mm = 400, kBrightest = 255;
+
+double Thousandths(float x) { return std::round(1e3 * static_cast<double>(x)) / 1e3; }
 float Metres(double mm) { return static_cast<float>(1e-3 * mm); }
 
 void RequireRadii(const std::vector<double>& radii_mm) {
@@ -27,6 +32,45 @@ void RequireRadii(const std::vector<double>& radii_mm) {
   }
 }
 
+void RequireFace(const HeadFile& file) {
+  const std::size_t n = file.face_points_mm.size() / 3;
+  if (file.face_points_mm.size() % 3 != 0 || (n > 0 && n < kFewestFacePoints) ||
+      n > kMostFacePoints) {
+    throw FieldError("face_points_mm", std::to_string(file.face_points_mm.size()) + " numbers",
+                     "must be x y z of 100 to 5000 points, or none");
+  }
+  for (const double x : file.face_points_mm) {
+    if (!(std::abs(x) <= kFarthest_mm)) {
+      throw FieldError("face_points_mm", std::to_string(x), "must each be -400 to 400 mm");
+    }
+  }
+  for (const auto& [key, values] :
+       {std::pair("face_fine", &file.face_fine), std::pair("face_coarse", &file.face_coarse)}) {
+    if (values->size() != n) {
+      throw FieldError(key, std::to_string(values->size()) + " numbers",
+                       "must be one for each point of face_points_mm");
+    }
+    for (const double value : *values) {
+      if (!(std::abs(value) <= kBrightest)) {
+        throw FieldError(key, std::to_string(value), "must each be -255 to 255");
+      }
+    }
+  }
+}
+
+LearnedFace FaceOf(const HeadFile& file, const HeadSurface& surface) {
+  LearnedFace face;
+  for (std::size_t i = 0; i < file.face_fine.size(); ++i) {
+    face.points.emplace_back(Metres(file.face_points_mm[3 * i]),
+                             Metres(file.face_points_mm[3 * i + 1]),
+                             Metres(file.face_points_mm[3 * i + 2]));
+    face.normals.push_back(surface.NormalAt(face.points.back()));
+    face.value[kFineBand].push_back(static_cast<float>(file.face_fine[i]));
+    face.value[kCoarseBand].push_back(static_cast<float>(file.face_coarse[i]));
+  }
+  return face;
+}
+
 }  // namespace
 
 void HeadFile::ValidateOrThrow() const {
@@ -40,6 +84,7 @@ void HeadFile::ValidateOrThrow() const {
       throw FieldError("hair_side_mm", std::to_string(side), "must each be -1000 to 1000 mm");
     }
   }
+  RequireFace(*this);
   if (origin_mm.size() != 3) {
     throw FieldError("origin_mm", std::to_string(origin_mm.size()) + " numbers", "must be three");
   }
@@ -64,7 +109,9 @@ HeadGeometry LoadHeadFile(const std::string& filename) {
   for (const double radius : file.radii_mm) table.radii_m.push_back(Metres(radius));
   for (const double side : file.hair_side_mm) table.hair_side_m.push_back(Metres(side));
   const auto& o = file.origin_mm;
-  return {HeadSurface(shape, table), 1e-3 * Eigen::Vector3d(o[0], o[1], o[2])};
+  HeadGeometry head{HeadSurface(shape, table), 1e-3 * Eigen::Vector3d(o[0], o[1], o[2])};
+  if (!file.face_points_mm.empty()) head.face = FaceOf(file, head.surface);
+  return head;
 }
 
 void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int level) {
@@ -81,6 +128,13 @@ void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int lev
   const HeadTable table = TableOf(head.surface, level);
   for (const float radius : table.radii_m) file.radii_mm.push_back(Mm(radius));
   for (const float side : table.hair_side_m) file.hair_side_mm.push_back(Mm(side));
+  if (head.face) {
+    for (std::size_t i = 0; i < head.face->points.size(); ++i) {
+      for (int k = 0; k < 3; ++k) file.face_points_mm.push_back(Mm(head.face->points[i][k]));
+      file.face_fine.push_back(Thousandths(head.face->value[kFineBand][i]));
+      file.face_coarse.push_back(Thousandths(head.face->value[kCoarseBand][i]));
+    }
+  }
   std::ofstream out(filename);
   out << "# A head for visavis-recogniser: refined.head.file. Radii by direction, frame M, mm.\n"
       << DumpConfig(file) << "\n";

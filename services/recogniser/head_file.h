@@ -23,6 +23,9 @@ struct HeadFile {
     a->Visit("origin_mm", &origin_mm);
     a->Visit("radii_mm", &radii_mm);
     a->Visit("hair_side_mm", &hair_side_mm);
+    a->Visit("face_points_mm", &face_points_mm);
+    a->Visit("face_fine", &face_fine);
+    a->Visit("face_coarse", &face_coarse);
   }
   /// @throws FieldError naming key, value and rule.
   void ValidateOrThrow() const;
@@ -30,9 +33,11 @@ struct HeadFile {
   double eye_x_mm{31}, eye_y_mm{13}, brow_y_mm{3.5}, nostril_y_mm{59}, mouth_y_mm{82};
   double hair_tilt_deg{34};    ///< plane between hair and skin, where hair_side_mm is empty
   double hair_offset_mm{-29};  ///< hair where -y sin(tilt) + z cos(tilt) exceeds it
-  std::vector<double> origin_mm{0, 0, 0};  ///< in M, of the frame that poses are reported in
-  std::vector<double> radii_mm;            ///< HeadTable::radii_m
-  std::vector<double> hair_side_mm;        ///< HeadTable::hair_side_m, or empty
+  std::vector<double> origin_mm{0, 0, 0};      ///< in M, of the frame that poses are reported in
+  std::vector<double> radii_mm;                ///< HeadTable::radii_m
+  std::vector<double> hair_side_mm;            ///< HeadTable::hair_side_m, or empty
+  std::vector<double> face_points_mm;          ///< LearnedFace: x y z of each point; or empty
+  std::vector<double> face_fine, face_coarse;  ///< brightness there, by band
 };
 
 /// @throws ConfigError: one line with file, line, key, value and rule.

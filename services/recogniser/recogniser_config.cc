@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "common/config/config_error.h"
+#include "services/recogniser/chosen_head.h"
 #include "services/recogniser/fitness_kernel.h"
 
 namespace visavis {
@@ -13,6 +14,7 @@ void RecogniserConfig::ValidateOrThrow() const {
   start.ValidateOrThrow("start.");
   ga.ValidateOrThrow("ga.");
   head.ValidateOrThrow("head.");
+  RefinedHead();
   if (!rig_file.empty() && !std::filesystem::exists(rig_file)) {
     throw FieldError("rig_file", rig_file, "must be a file that exists, or empty");
   }
@@ -42,6 +44,8 @@ visavis::RefinedSettings RecogniserConfig::RefinedSettings() const {
   settings.seed = static_cast<std::uint64_t>(seed);
   return settings;
 }
+
+HeadGeometry RecogniserConfig::RefinedHead() const { return ChosenHead(refined.head, head); }
 
 FeedforwardMode ParseFeedforward(const std::string& word) {
   if (word == "none") return FeedforwardMode::kNone;

@@ -6,6 +6,7 @@
 #include "common/config/rule.h"
 #include "services/recogniser/head_model.h"
 #include "services/recogniser/published_estimator.h"
+#include "services/recogniser/refined/head_geometry.h"
 #include "services/recogniser/refined/refined_config.h"
 
 namespace visavis {
@@ -60,6 +61,9 @@ struct RecogniserConfig {
   PublishedEstimator::Settings PublishedSettings() const;
   /// What the refined estimator takes.
   visavis::RefinedSettings RefinedSettings() const;
+  /// The head that the refined estimator looks for; reads refined.head.file.
+  /// @throws FieldError for a file that is no head.
+  HeadGeometry RefinedHead() const;
 
   /// published: the paper's method. refined: the same idea taken further.
   std::string estimator{"refined"};

@@ -53,6 +53,7 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
       timer_(&MonotonicSeconds),
       ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
       feedforward_(ParseFeedforward(config.feedforward)),
+      refined_head_(config.RefinedHead()),
       estimator_name_(config.estimator) {
   SelectSimdTarget(config.simd.c_str());
   if (!config.rig_file.empty()) SetRig(LoadRigFile(config.rig_file));
@@ -87,7 +88,7 @@ void RecogniserService::SetRig(const RigDescription& description) {
 std::unique_ptr<Estimator> RecogniserService::NewEstimator(const StereoRig& rig) const {
   std::unique_ptr<Estimator> estimator;
   if (estimator_name_ == "refined") {
-    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), rig);
+    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), refined_head_, rig);
   } else {
     estimator =
         std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head, rig);

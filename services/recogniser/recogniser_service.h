@@ -70,7 +70,8 @@ class RecogniserService final : public Service {
   std::unique_ptr<FramePreparer> preparer_;
   std::unique_ptr<Estimator> estimator_;
   FeedforwardMode feedforward_;
-  std::string estimator_name_;  // in use
+  const HeadGeometry refined_head_;  // read once: its file may be large
+  std::string estimator_name_;       // in use
 
   images_t waiting_;  // the pair that waits; its memory is reused
   bool is_waiting_{false};

@@ -2,16 +2,10 @@
 
 #include <string>
 
+#include "common/mesh/labelled_mesh.h"
 #include "services/simulator/figure.h"
 
 namespace visavis {
-
-/// How a mesh file becomes a head.
-struct MeshFileOptions {
-  double scale{1};  ///< metres per unit of the file
-  bool y_up{true};  ///< the file's axes are x right, y up, z towards the viewer (glTF); false: M's
-  Eigen::Vector3d p_origin_m{0, 0, 0};  ///< M's origin, in the scaled file's own axes
-};
 
 /// Reads a head from OBJ, glTF or whatever assimp reads. Each mesh is labelled by its material's
 /// name (LabelFromMaterialName) and takes its diffuse colour; pictures are not read. Clothes do not

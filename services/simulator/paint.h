@@ -1,7 +1,7 @@
 #pragma once
 
+#include "common/mesh/label.h"
 #include "services/simulator/colour.h"
-#include "services/simulator/label.h"
 #include "services/simulator/subject.h"
 
 namespace visavis {

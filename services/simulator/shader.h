@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "common/mesh/label.h"
 #include "services/simulator/actor.h"
-#include "services/simulator/label.h"
 #include "services/simulator/lighting.h"
 #include "services/simulator/ray_scene.h"
 

@@ -26,6 +26,7 @@ struct SimulatorConfig {
     a->Visit("publish_camera_pose", &publish_camera_pose);
     a->Visit("image_format", &image_format, OneOf({"raw", "jpeg"}));
     a->Visit("jpeg_quality", &jpeg_quality, InRange(1, 100));
+    a->Visit("export_mesh", &export_mesh);
   }
   /// @throws FieldError naming key, value and rule.
   void ValidateOrThrow() const;
@@ -43,6 +44,7 @@ struct SimulatorConfig {
   bool publish_camera_pose{false};  ///< CAMERA_POSE, one a pair
   std::string image_format{"raw"};
   int jpeg_quality{90};
+  std::string export_mesh;  ///< the subject's head is written there as OBJ; empty: nowhere
 };
 
 }  // namespace visavis

@@ -10,6 +10,7 @@
 #include "common/convert/rig_message.h"
 #include "common/rigs/demo_rig.h"
 #include "common/rigs/rig_file.h"
+#include "services/simulator/mesh_export.h"
 
 namespace visavis {
 namespace {
@@ -48,7 +49,8 @@ ServiceTraits SimulatorService::Traits() {
       {"--period", "scenario.period_s", "[s] of shuttle_x and orbit_theta"},
       {"--subject", "scene.subject", "who stands before the cameras, adult_a ..."},
       {"--seconds", "seconds", "how long; 0: until stopped"},
-      {"--seed", "seed", "of all that is random"}};
+      {"--seed", "seed", "of all that is random"},
+      {"--export-mesh", "export_mesh", "FILE: writes the subject's head there as OBJ"}};
   return traits;
 }
 
@@ -66,6 +68,7 @@ SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceC
       left_rgb_(static_cast<std::size_t>(3 * rig_.rig.left.width * rig_.rig.left.height)),
       start_us_(context.live ? context.clock->NowUs() + 100'000 : kFastStartUs),
       next_rig_us_(start_us_) {
+  if (!config_.export_mesh.empty()) ExportHead(world_.figure(), config_.export_mesh);
   rig_message_ = ToMessage(rig_, 0);
   if (!config_.publish_arm) {
     rig_message_.has_hand_eye = false;

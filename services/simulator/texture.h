@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/simulator/label.h"
+#include "common/mesh/label.h"
 
 namespace visavis {
 

@@ -40,7 +40,7 @@ std::vector<Frame> Run(const std::string& log, std::uint64_t seed) {
   LogPlayer player(log);
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
-  RefinedEstimator estimator(settings, player.rig());
+  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig());
   StageTimer timer(&MonotonicSeconds);
   std::vector<Frame> frames;
   std::int64_t start_us = -1;

@@ -23,6 +23,7 @@ int ScoreOf(PackedScores s, int edge) {
 
 ContourTerm::ContourTerm(const HeadMesh& mesh, const Hairline& hairline)
     : mesh_(mesh), hairline_(hairline), facing_(mesh.vertices.size()), silhouette_(kDirections) {
+  outline_.reserve(kDirections);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     n_dot_p_.push_back(mesh.normals[i].dot(mesh.vertices[i]));
   }

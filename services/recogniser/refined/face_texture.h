@@ -4,15 +4,9 @@
 #include <vector>
 
 #include "services/recogniser/refined/appearance.h"
+#include "services/recogniser/refined/learned_face.h"
 
 namespace visavis {
-
-/// A face as it was learned and is to be remembered.
-struct LearnedFace {
-  std::vector<Eigen::Vector3f> points, normals;  ///< M frame, m
-  /// Brightness there in each band, arbitrary units.
-  std::array<std::vector<float>, kNumBands> value;
-};
 
 /// How this face looks, learned from poses that were good: brightness at points in each band, in
 /// the units of the first picture that the band is learned from. The points begin on the generic

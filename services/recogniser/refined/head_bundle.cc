@@ -7,8 +7,7 @@
 namespace visavis {
 namespace {
 
-constexpr int kShapeLevel = 4, kMeshLevel = 4;
-constexpr double kFaceSpacing_m = 0.005;
+constexpr int kShapeLevel = 4;
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
 constexpr float kMinFacing = 0.6f;
@@ -18,13 +17,6 @@ constexpr double kIndependence = 0.1, kOutlineIndependence = 0.3;
 constexpr float kRelativeSigma = 0.35f, kNoise = 0.5f;  ///< as in the refiner: contrast, levels
 
 }  // namespace
-
-HeadBundle::Model::Model(const RefinerConfig& config, const HeadSurface& head)
-    : surface(head),
-      mesh(MeshOf(surface, kMeshLevel)),
-      face(FacePointsOf(surface, kFaceSpacing_m)),
-      refiner(config, surface, mesh, face),
-      texture(face) {}
 
 HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double distance_m,
                        const HeadGeometry& head, const std::array<ColorModel, 2>& colors)
@@ -39,7 +31,7 @@ HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double
              BandImages(pair_.eye(1).width, pair_.eye(1).height)},
       shape_(kShapeLevel),
       displaced_(start_table_.radii_m.size()),
-      model_(std::make_unique<Model>(config, head.surface)) {}
+      model_(std::make_unique<Model>(config, head)) {}
 
 void HeadBundle::Add(const StereoFrame& frame, const RigidTransform& X_CM) {
   View& view = views_.emplace_back();
@@ -70,7 +62,8 @@ const FaceTexture& HeadBundle::LearnTexture() {
     Look(view);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye) {
-        texture.Learn(band, model_->refiner.Sample(view_, eye, view.X_CM, band, texture.points()));
+        texture.Learn(
+            band, model_->prepared.refiner.Sample(view_, eye, view.X_CM, band, texture.points()));
       }
     }
   }
@@ -82,7 +75,7 @@ HeadBundle::Agreement HeadBundle::RefinePoses() {
   for (View& view : views_) {
     Look(view);
     const Refined refined =
-        model_->refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
+        model_->prepared.refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
     if (refined.X_CM.matrix().allFinite()) view.X_CM = refined.X_CM;
     const double share = 1 / static_cast<double>(views_.size());
     sum.texture_ncc += share * refined.texture_ncc;
@@ -120,7 +113,7 @@ void HeadBundle::AddOutline(const View& view) {
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
   for (std::size_t eye = 0; eye < 2; ++eye) {
     for (const OutlineMeasurement& m :
-         model_->refiner.Outline(view_, eye, view.X_CM, kOutlineReach_px)) {
+         model_->prepared.refiner.Outline(view_, eye, view.X_CM, kOutlineReach_px)) {
       const Eigen::Vector3f d = m.p_M.normalized();
       shape_.Add(d, static_cast<double>(m.slope.dot(R_CM * d)), static_cast<double>(m.distance),
                  kOutlineIndependence * static_cast<double>(m.weight));
@@ -135,7 +128,8 @@ void HeadBundle::MoveSurface() {
     displaced_[i] += movement[i];
     table.radii_m[i] += displaced_[i];
   }
-  model_ = std::make_unique<Model>(config_, HeadSurface(start_.surface.shape(), table));
+  model_ = std::make_unique<Model>(config_, HeadGeometry{HeadSurface(start_.surface.shape(), table),
+                                                         start_.p_MR_m, std::nullopt});
 }
 
 HeadBundle::Agreement HeadBundle::Round() {

@@ -6,8 +6,7 @@
 
 #include "common/geometry/stereo_rig.h"
 #include "services/recogniser/refined/color_model.h"
-#include "services/recogniser/refined/head_geometry.h"
-#include "services/recogniser/refined/pose_refiner.h"
+#include "services/recogniser/refined/prepared_head.h"
 #include "services/recogniser/refined/shape_equations.h"
 #include "services/recogniser/refined/working_pair.h"
 
@@ -38,7 +37,7 @@ class HeadBundle {
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
 
-  HeadGeometry head() const { return {model_->surface, start_.p_MR_m}; }
+  const HeadGeometry& head() const { return model_->prepared.head; }
   /// Of head()'s points, from the poses as they are.
   const FaceTexture& LearnTexture();
 
@@ -48,13 +47,10 @@ class HeadBundle {
     std::array<ImageView, 2> pictures;
     RigidTransform X_CM;
   };
-  /// What is made of a surface.
   struct Model {
-    Model(const RefinerConfig& config, const HeadSurface& head);
-    const HeadSurface surface;
-    const HeadMesh mesh;
-    const FacePoints face;
-    PoseRefiner refiner;
+    Model(const RefinerConfig& config, const HeadGeometry& head)
+        : prepared(config, head), texture(prepared.face) {}
+    PreparedHead prepared;
     FaceTexture texture;
   };
 

@@ -2,6 +2,18 @@
 
 namespace visavis {
 
+Eigen::Vector3d AdultEyes() {
+  const HeadShape shape;
+  const HeadSurface adult(shape);
+  float inside = 0, outside = 0.2f;
+  for (int k = 0; k < 22; ++k) {
+    const float depth = 0.5f * (inside + outside);
+    const Eigen::Vector3f p(shape.eye_x, shape.eye_y, -depth);
+    (p.norm() < adult.Radius(p.normalized()) ? inside : outside) = depth;
+  }
+  return {0, static_cast<double>(shape.eye_y), -static_cast<double>(inside)};
+}
+
 HeadTable TableOf(const HeadSurface& surface, int level) {
   HeadTable table;
   const Icosphere sphere(level);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "services/recogniser/refined/head_surface.h"
+#include "services/recogniser/refined/learned_face.h"
 
 namespace visavis {
 
@@ -12,7 +14,12 @@ namespace visavis {
 struct HeadGeometry {
   HeadSurface surface{HeadShape{}};
   Eigen::Vector3d p_MR_m{0, 0, 0};  ///< R's origin in M
+  /// How an enrolled face looks. Its frame is fixed then, by these points; without, it is learned.
+  std::optional<LearnedFace> face{};
 };
+
+/// Between the pupils of the generic adult, on its surface: where every head has them in M [m].
+Eigen::Vector3d AdultEyes();
 
 /// @p surface by direction, for the level of so many vertices (see HeadTable); with the border of
 /// its hair.

@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/config/rule.h"
 #include "services/recogniser/estimator.h"
-#include "services/recogniser/refined/head_geometry.h"
 #include "services/recogniser/refined/pose_refiner.h"
 #include "services/recogniser/refined/real_population.h"
 
@@ -41,6 +42,27 @@ struct EvidenceConfig {
   int strange_frames{3};             ///< so often a face other than the learned one: learn it anew
 };
 
+/// Which head is looked for.
+struct HeadChoice {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("shape", &shape, OneOf({"adult", "ellipsoid", "sphere"}));
+    a->Visit("file", &file);
+    a->Visit("scale", &scale, InRange(1e-9, 1e9));
+    a->Visit("y_up", &y_up);
+    a->Visit("origin_m", &origin_m);
+  }
+  /// adult: the generic one. ellipsoid, sphere: the published estimator's sizes (head.*), coarser.
+  std::string shape{"adult"};
+  /// In its place: a head.yaml, or a closed mesh labelled by the names of its materials; or empty.
+  std::string file;
+  double scale{1};  ///< of a mesh: metres per unit of the file
+  bool y_up{true};  ///< of a mesh: the file's axes are x right, y up, z to the viewer; false: M's
+  /// Of a mesh: origin of the frame that poses are reported in, in the scaled file's own axes.
+  /// Empty: the generic adult's, from the eyes.
+  std::vector<double> origin_m;
+};
+
 /// All that the refined estimator can be set to.
 struct RefinedConfig {
   template <typename A>
@@ -54,6 +76,7 @@ struct RefinedConfig {
     a->Visit("population", &population);
     a->Visit("refiner", &refiner);
     a->Visit("evidence", &evidence);
+    a->Visit("head", &head);
   }
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
   int search_shots{3000};       ///< poses glanced at, in a frame without
@@ -64,13 +87,12 @@ struct RefinedConfig {
   RealGaConfig population;
   RefinerConfig refiner;
   EvidenceConfig evidence;
+  HeadChoice head;
 };
 
 /// What a refined estimator is made with.
 struct RefinedSettings {
   RefinedConfig refined;
-  HeadGeometry head;
-  std::optional<LearnedFace> face;  ///< of an enrolled head: how it looks; its frame is fixed then
   SearchSpace space;
   bool recentre{true};
   FeedforwardMode feedforward{FeedforwardMode::kExact};

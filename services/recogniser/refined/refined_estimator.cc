@@ -6,8 +6,6 @@
 namespace visavis {
 namespace {
 
-constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
-constexpr double kFaceSpacing_m = 0.005;
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kMoreRounds = 2;  ///< of iterations, where a tracked pose has not come to rest
 constexpr int kLeastBox_px = 32;
@@ -15,28 +13,30 @@ constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
 
 /// From the normal equations, and what they cannot know: the head is not shaped as the model. The
-/// head frame's constant offset is a matter of definition and not in it.
-Matrix6d Covariance(const Matrix6d& information) {
+/// head frame's constant offset is a matter of definition and not in it. @p p_MR_C: R's origin from
+/// M's, in C; its position hangs on the rotation with that lever.
+Matrix6d Covariance(const Matrix6d& information, const Eigen::Vector3d& p_MR_C) {
   Matrix6d covariance = information.inverse();
   covariance.diagonal().head<3>().array() += kShape_m * kShape_m;
   covariance.diagonal().tail<3>().array() += kShape_rad * kShape_rad;
-  return covariance;
+  Matrix6d lever = Matrix6d::Identity();
+  lever.topRightCorner<3, 3>() << 0, p_MR_C.z(), -p_MR_C.y(),  //
+      -p_MR_C.z(), 0, p_MR_C.x(),                              //
+      p_MR_C.y(), -p_MR_C.x(), 0;
+  return lever * covariance * lever.transpose();
 }
 
 double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + space.max[2]); }
 
 }  // namespace
 
-RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const StereoRig& rig)
+RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head,
+                                   const StereoRig& rig)
     : settings_(settings),
-      surface_(settings.head.surface),
-      mesh_(MeshOf(surface_, kMeshLevel)),
-      face_(FacePointsOf(surface_, kFaceSpacing_m)),
+      head_(settings.refined.refiner, head),
+      X_MR_(MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m)),
       pair_(rig, MiddleDistance(settings.space)),
-      coarse_fitness_(MeshOf(surface_, kCoarseMeshLevel), face_, 2),
-      fitness_(MeshOf(surface_, kCoarseMeshLevel), face_, 1),
-      refiner_(settings.refined.refiner, surface_, mesh_, face_),
-      texture_(face_),
+      texture_(head_.face),
       scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
               ScoreMap(pair_.eye(1).width, pair_.eye(1).height)},
       bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
@@ -54,7 +54,8 @@ void RefinedEstimator::Reset() {
   population_.SetSpace(settings_.space);
   population_.Restart();
   colors_started_ = {};
-  X_CM_ = settings_.start_X_CM;
+  X_CM_.reset();
+  if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
   estimate_ = Estimate{};
   frames_ = 0;
   good_in_a_row_ = bad_in_a_row_ = 0;
@@ -68,9 +69,9 @@ void RefinedEstimator::ForgetFace() {
 }
 
 void RefinedEstimator::RememberEnrolled() {
-  if (!settings_.face || is_enrolled_) return;
+  if (!head_.head.face || is_enrolled_) return;
   ForgetFace();
-  texture_.Remember(*settings_.face);
+  texture_.Remember(*head_.head.face);
   is_enrolled_ = true;
 }
 
@@ -134,8 +135,8 @@ RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X
                                                          const FaceTexture* texture, int iterations,
                                                          int reach_px) {
   Candidate candidate;
-  candidate.refined = refiner_.Refine(view_, X_CM, texture, iterations, reach_px);
-  candidate.score = fitness_.Evaluate(view_, candidate.refined.X_CM);
+  candidate.refined = head_.refiner.Refine(view_, X_CM, texture, iterations, reach_px);
+  candidate.score = head_.fitness.Evaluate(view_, candidate.refined.X_CM);
   return candidate;
 }
 
@@ -148,7 +149,7 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   estimate_.evaluations += 1;
   const auto fitness = [&](const Vector6d& phi) {
     ++estimate_.evaluations;
-    return coarse_fitness_.Evaluate(view_, TransformFromPhi(phi)).total();
+    return head_.coarse_fitness.Evaluate(view_, TransformFromPhi(phi)).total();
   };
   if (settings_.refined.track_evaluations == 0) return best;
   population_.Evaluate(fitness);
@@ -233,15 +234,16 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
       return ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]);
     };
     counts_.Clear();
-    for (std::size_t k = 0; k < mesh_.vertices.size(); ++k) {
-      const Eigen::Vector3f view = mesh_.vertices[k] - pose.p_ME;
-      const float facing = -mesh_.normals[k].dot(view) / view.norm();
-      if (facing > 0.3f && mesh_.coloured[k]) {
-        const int b = bin(mesh_.vertices[k]);
-        if (b >= 0) counts_.Add(mesh_.parts[k] == HeadPart::kHair ? kHairColor : kSkinColor, b);
-      } else if (std::abs(facing) < 0.2f && mesh_.contour_weights[k] > 0) {
+    for (std::size_t k = 0; k < head_.mesh.vertices.size(); ++k) {
+      const Eigen::Vector3f view = head_.mesh.vertices[k] - pose.p_ME;
+      const float facing = -head_.mesh.normals[k].dot(view) / view.norm();
+      if (facing > 0.3f && head_.mesh.coloured[k]) {
+        const int b = bin(head_.mesh.vertices[k]);
+        if (b >= 0)
+          counts_.Add(head_.mesh.parts[k] == HeadPart::kHair ? kHairColor : kSkinColor, b);
+      } else if (std::abs(facing) < 0.2f && head_.mesh.contour_weights[k] > 0) {
         for (const float beyond : {0.014f, 0.024f, 0.036f}) {
-          const int b = bin(mesh_.vertices[k] + beyond * mesh_.normals[k]);
+          const int b = bin(head_.mesh.vertices[k] + beyond * head_.mesh.normals[k]);
           if (b >= 0) counts_.Add(kSurroundings, b);
         }
       }
@@ -262,8 +264,8 @@ void RefinedEstimator::Learn() {
   for (const Band band : {kFineBand, kCoarseBand}) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (view_[i].seen())
-        texture_.Learn(band,
-                       refiner_.Sample(view_, i, candidate_.refined.X_CM, band, texture_.points()));
+        texture_.Learn(
+            band, head_.refiner.Sample(view_, i, candidate_.refined.X_CM, band, texture_.points()));
     }
   }
 }
@@ -272,7 +274,7 @@ void RefinedEstimator::Learn() {
 void RefinedEstimator::MoveAnchor() {
   RigidTransform& X_CM = candidate_.refined.X_CM;
   const Eigen::Vector3d direction = -(X_CM.linear().transpose() * X_CM.translation()).normalized();
-  anchor_.Add(direction, refiner_.Generic(view_, X_CM));
+  anchor_.Add(direction, head_.refiner.Generic(view_, X_CM));
   const RigidTransform X_MN = anchor_.Correct();
   X_CM = X_CM * X_MN;
   texture_.Move(X_MN.inverse());
@@ -326,10 +328,11 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (good && texture_.learned() && !is_enrolled_) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
-  estimate_.X_CM = X_CM_;
+  estimate_.X_CM = *X_CM_ * X_MR_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
-  estimate_.covariance = Covariance(candidate_.refined.information);
+  estimate_.covariance =
+      Covariance(candidate_.refined.information, X_CM_->linear() * X_MR_.translation());
   total_generations_ += estimate_.generations;
   if (good) Learn();
   ++frames_;

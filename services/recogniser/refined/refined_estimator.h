@@ -9,7 +9,8 @@
 #include "services/recogniser/estimator.h"
 #include "services/recogniser/refined/color_model.h"
 #include "services/recogniser/refined/head_anchor.h"
-#include "services/recogniser/refined/mesh_fitness.h"
+#include "services/recogniser/refined/head_geometry.h"
+#include "services/recogniser/refined/prepared_head.h"
 #include "services/recogniser/refined/refined_config.h"
 #include "services/recogniser/refined/working_pair.h"
 
@@ -19,7 +20,7 @@ namespace visavis {
 /// by Gauss-Newton over contours, the face's pattern, learned texture and left-right agreement.
 class RefinedEstimator final : public Estimator {
  public:
-  RefinedEstimator(const RefinedSettings& settings, const StereoRig& rig);
+  RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head, const StereoRig& rig);
 
   const Estimate& Process(const StereoFrame& frame, const CameraStep& step,
                           StageTimer* timer) override;
@@ -28,6 +29,7 @@ class RefinedEstimator final : public Estimator {
   void SetSearchSpace(const SearchSpace& space) override;
   const std::array<ColorModel, 2>& colors() const { return colors_; }
   const FaceTexture& texture() const { return texture_; }
+  /// In M (see HeadGeometry), while the poses of estimates and settings are those of R.
   const std::vector<Individual>& population() const override { return population_.individuals(); }
   std::int64_t total_generations() const override { return total_generations_; }
 
@@ -82,12 +84,9 @@ class RefinedEstimator final : public Estimator {
   void MoveAnchor();
 
   RefinedSettings settings_;
-  const HeadSurface surface_;
-  const HeadMesh mesh_;
-  const FacePoints face_;
+  PreparedHead head_;
+  const RigidTransform X_MR_;  ///< the frame that poses are reported in
   WorkingPair pair_;
-  MeshFitness coarse_fitness_, fitness_;
-  PoseRefiner refiner_;
   FaceTexture texture_;
   bool is_enrolled_{false};  ///< texture_ is the enrolled face's, in its own fixed frame
   HeadAnchor anchor_;

@@ -27,10 +27,10 @@ bool AreOnePlace(const RigidTransform& a, const RigidTransform& b) {
 RefinedEstimator::Candidate RefinedEstimator::Search() {
   const auto fitness = [&](const Vector6d& phi) {
     const RigidTransform X = TransformFromPhi(phi);
-    const double glance = coarse_fitness_.GlanceAtSkin(view_, X);
+    const double glance = head_.coarse_fitness.GlanceAtSkin(view_, X);
     if (glance < kLeastGlance) return kHopeless + glance;
     ++estimate_.evaluations;
-    return coarse_fitness_.Evaluate(view_, X).total();
+    return head_.coarse_fitness.Evaluate(view_, X).total();
   };
   population_.Evaluate(fitness);
   population_.Shoot(settings_.refined.search_shots, fitness);

@@ -20,7 +20,7 @@ class RefinedEstimatorTest : public ::testing::Test {
  protected:
   RefinedEstimatorTest()
       : scene_(TestRig()),
-        estimator_(RecogniserConfig{}.RefinedSettings(), TestRig()) {
+        estimator_(RecogniserConfig{}.RefinedSettings(), HeadGeometry{}, TestRig()) {
     timer_.Restart();
   }
 
@@ -124,7 +124,7 @@ TEST_F(RefinedEstimatorTest, ATrackedFrameAllocatesNothing) {
 TEST_F(RefinedEstimatorTest, ResetForgetsTheHeadAndTheSameFramesGiveTheSamePoses) {
   std::vector<Eigen::Matrix4d> first;
   for (int i = 0; i < 4; ++i) first.push_back(SeeHeadAt(kPlace).X_CM->matrix());
-  RefinedEstimator again(RecogniserConfig{}.RefinedSettings(), TestRig());
+  RefinedEstimator again(RecogniserConfig{}.RefinedSettings(), HeadGeometry{}, TestRig());
   StereoFrame frame;
   frame.right = scene_.picture(0);
   frame.left = scene_.picture(1);
@@ -133,6 +133,55 @@ TEST_F(RefinedEstimatorTest, ResetForgetsTheHeadAndTheSameFramesGiveTheSamePoses
   }
   estimator_.Reset();
   EXPECT_GT(See().evaluations, 500);  // searched for anew
+}
+
+TEST_F(RefinedEstimatorTest, PosesAreToldFromTheHeadsOwnOrigin) {
+  HeadGeometry head;
+  head.p_MR_m = {0.01, -0.03, 0.02};
+  RefinedEstimator shifted(RecogniserConfig{}.RefinedSettings(), head, TestRig());
+  SeeHeadAt(kPlace);
+  StereoFrame frame;
+  frame.right = scene_.picture(0);
+  frame.left = scene_.picture(1);
+  const Estimate& plain = See();
+  shifted.Process(frame, {}, &timer_);
+  const Estimate& estimate = shifted.Process(frame, {}, &timer_);
+  const RigidTransform X_MR = MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m);
+  EXPECT_TRUE((*plain.X_CM * X_MR).isApprox(*estimate.X_CM, 1e-9));
+  // u.(dp + dw x r) = u.dp + dw.(r x u)
+  const Eigen::Vector3d r = plain.X_CM->linear() * head.p_MR_m, u(0.6, -0.48, 0.64);
+  Vector6d with_lever;
+  with_lever << u, r.cross(u);
+  const double variance = u.dot(estimate.covariance->block<3, 3>(0, 0) * u);
+  EXPECT_NEAR(variance, with_lever.dot(*plain.covariance * with_lever), 1e-9 * variance);
+}
+
+TEST_F(RefinedEstimatorTest, AStartIsTheHeadsOwnOriginsToo) {
+  HeadGeometry head;
+  head.p_MR_m = {0.01, -0.03, 0.02};
+  const RigidTransform X_MR = MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m);
+  SeeHeadAt(kPlace);
+  StereoFrame frame;
+  frame.right = scene_.picture(0);
+  frame.left = scene_.picture(1);
+  RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
+  settings.start_X_CM = truth_;
+  RefinedEstimator plain(settings, HeadGeometry{}, TestRig());
+  settings.start_X_CM = truth_ * X_MR;
+  RefinedEstimator shifted(settings, head, TestRig());
+  const RigidTransform X_CM = *plain.Process(frame, {}, &timer_).X_CM;
+  EXPECT_TRUE((X_CM * X_MR).isApprox(*shifted.Process(frame, {}, &timer_).X_CM, 1e-9));
+}
+
+TEST_F(RefinedEstimatorTest, ATableOfTheAdultTracksAsTheAdultDoes) {
+  const HeadSurface adult{HeadShape{}};
+  const HeadGeometry head{HeadSurface(HeadShape{}, TableOf(adult, 5)), {0, 0, 0}};
+  RefinedEstimator tabulated(RecogniserConfig{}.RefinedSettings(), head, TestRig());
+  SeeHeadAt(kPlace);
+  StereoFrame frame;
+  frame.right = scene_.picture(0);
+  frame.left = scene_.picture(1);
+  for (int i = 0; i < 3; ++i) ExpectTracked(tabulated.Process(frame, {}, &timer_), 4, 2);
 }
 
 TEST_F(RefinedEstimatorTest, TheCovarianceIsSymmetricAndDepthTheWeakestDirection) {

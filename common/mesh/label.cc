@@ -1,4 +1,4 @@
-#include "services/simulator/label.h"
+#include "common/mesh/label.h"
 
 #include <algorithm>
 #include <cctype>
