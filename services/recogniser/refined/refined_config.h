@@ -20,6 +20,7 @@ struct EvidenceConfig {
     a->Visit("lock_ncc", &lock_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_gray_ncc", &lock_gray_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_stereo_ncc", &lock_stereo_ncc, InRange(-1.0, 1.0));
+    a->Visit("lock_gray_stereo_ncc", &lock_gray_stereo_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
     a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
     a->Visit("enrolled_texture_ncc", &enrolled_texture_ncc, InRange(-1.0, 1.0));
@@ -29,17 +30,18 @@ struct EvidenceConfig {
     a->Visit("confirm_frames", &confirm_frames, InRange(1, 100));
     a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
   }
-  double lock_ncc{0.2};              ///< generic pattern, before TRACKING
-  double lock_gray_ncc{0.5};         ///< the same where the pictures are grey
-  double lock_stereo_ncc{0.7};       ///< agreement of both eyes, before TRACKING
-  double lock_outside{-0.5};         ///< at most: how much the surroundings look like a head
-  double lock_inside{0.4};           ///< at least: how much the inside does
-  double enrolled_texture_ncc{0.7};  ///< an enrolled face, to be found
-  double keep_texture_ncc{0.6};      ///< learned texture, while TRACKING
-  double keep_ncc{0.1};              ///< generic pattern, while TRACKING
-  double keep_stereo_ncc{0.5};       ///< agreement of both eyes, while TRACKING
-  int confirm_frames{1};             ///< good frames in a row before TRACKING
-  int strange_frames{3};             ///< so often a face other than the learned one: learn it anew
+  double lock_ncc{0.2};               ///< generic pattern, before TRACKING
+  double lock_gray_ncc{0.5};          ///< the same where the pictures are grey
+  double lock_stereo_ncc{0.7};        ///< agreement of both eyes, before TRACKING
+  double lock_gray_stereo_ncc{0.96};  ///< the same where the pictures are grey
+  double lock_outside{-0.5};          ///< at most: how much the surroundings look like a head
+  double lock_inside{0.4};            ///< at least: how much the inside does
+  double enrolled_texture_ncc{0.7};   ///< an enrolled face, to be found
+  double keep_texture_ncc{0.6};       ///< learned texture, while TRACKING
+  double keep_ncc{0.1};               ///< generic pattern, while TRACKING
+  double keep_stereo_ncc{0.5};        ///< agreement of both eyes, while TRACKING
+  int confirm_frames{1};              ///< good frames in a row before TRACKING
+  int strange_frames{3};              ///< so often a face other than the learned one: learn it anew
 };
 
 /// Which head is looked for.

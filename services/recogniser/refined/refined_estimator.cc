@@ -182,7 +182,7 @@ bool RefinedEstimator::IsFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
   return IsPlausible(c.refined.X_CM) && c.refined.converged() &&
          c.score.ncc > (c.score.has_color ? e.lock_ncc : e.lock_gray_ncc) && BothEyes() &&
-         c.refined.stereo_ncc > e.lock_stereo_ncc &&
+         c.refined.stereo_ncc > (c.score.has_color ? e.lock_stereo_ncc : e.lock_gray_stereo_ncc) &&
          (!c.score.has_color ||
           (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -39,9 +40,14 @@ class RefinedEstimator final : public Estimator {
     MeshScore score;  ///< against the generic pattern
 
     /// What decides between candidates: the fitness, how far both eyes agree on the surface, and
-    /// how well the contours lie.
+    /// how well the contours lie. On grey pictures there are no contours, and the pattern is met
+    /// with by chance: there the agreement counts by its likelihood.
     double merit() const {
-      const double merit = score.total() + refined.stereo_ncc - 0.2 * refined.contour.rms_px();
+      const double stereo = refined.stereo_ncc;
+      const double agreement =
+          score.has_color ? stereo
+                          : -0.5 * std::log(1 - std::min(stereo * std::abs(stereo), 0.999));
+      const double merit = score.total() + agreement - 0.2 * refined.contour.rms_px();
       return std::isfinite(merit) ? merit : -1e9;
     }
   };
