@@ -11,7 +11,7 @@
 #include "common/config/config_reader.h"
 #include "common/core/clock.h"
 #include "services/recogniser/recogniser_config.h"
-#include "tests/support/log_player.h"
+#include "services/recogniser/log_player.h"
 
 namespace visavis {
 namespace {

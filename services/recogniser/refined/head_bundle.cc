@@ -55,7 +55,7 @@ void HeadBundle::Look(const View& view) {
   }
 }
 
-const FaceTexture& HeadBundle::LearnTexture() {
+void HeadBundle::LearnTexture() {
   FaceTexture& texture = model_->texture;
   texture.Forget();
   for (const View& view : views_) {
@@ -67,7 +67,13 @@ const FaceTexture& HeadBundle::LearnTexture() {
       }
     }
   }
-  return texture;
+}
+
+HeadGeometry HeadBundle::Enrolled() {
+  LearnTexture();
+  HeadGeometry head = model_->prepared.head;
+  head.face = model_->texture.Learned();
+  return head;
 }
 
 HeadBundle::Agreement HeadBundle::RefinePoses() {
@@ -121,20 +127,23 @@ void HeadBundle::AddOutline(const View& view) {
   }
 }
 
-void HeadBundle::MoveSurface() {
+double HeadBundle::MoveSurface() {
   const std::vector<float> movement = shape_.Solve(displaced_, kPrior);
   HeadTable table = start_table_;
+  double sum = 0;
   for (std::size_t i = 0; i < displaced_.size(); ++i) {
     displaced_[i] += movement[i];
+    sum += static_cast<double>(movement[i] * movement[i]);
     table.radii_m[i] += displaced_[i];
   }
   model_ = std::make_unique<Model>(config_, HeadGeometry{HeadSurface(start_.surface.shape(), table),
                                                          start_.p_MR_m, std::nullopt});
+  return std::sqrt(sum / static_cast<double>(movement.size()));
 }
 
 HeadBundle::Agreement HeadBundle::Round() {
   LearnTexture();
-  const Agreement agreement = RefinePoses();
+  Agreement agreement = RefinePoses();
   LearnTexture();
   shape_.Clear();
   for (const View& view : views_) {
@@ -142,7 +151,7 @@ HeadBundle::Agreement HeadBundle::Round() {
     for (const Band band : {kFineBand, kCoarseBand}) AddShape(view, band);
     AddOutline(view);
   }
-  MoveSurface();
+  agreement.moved_m = MoveSurface();
   return agreement;
 }
 

@@ -33,13 +33,13 @@ class HeadBundle {
     double texture_ncc{0};  ///< pictures with the texture
     double stereo_ncc{0};   ///< both eyes' pictures
     double contour_px{0};   ///< rms distance of the contours
+    double moved_m{0};      ///< rms movement of the shape after all that
   };
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
 
-  const HeadGeometry& head() const { return model_->prepared.head; }
-  /// Of head()'s points, from the poses as they are.
-  const FaceTexture& LearnTexture();
+  /// The head as it is now, with its texture under the poses as they are now.
+  HeadGeometry Enrolled();
 
  private:
   struct View {
@@ -55,10 +55,11 @@ class HeadBundle {
   };
 
   void Look(const View& view);
+  void LearnTexture();
   Agreement RefinePoses();
   void AddShape(const View& view, Band band);
   void AddOutline(const View& view);
-  void MoveSurface();
+  double MoveSurface();
 
   const RefinerConfig config_;
   const HeadGeometry start_;

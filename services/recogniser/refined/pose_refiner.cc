@@ -7,6 +7,7 @@ namespace visavis {
 namespace {
 
 constexpr int kHairlinePoints = 33;
+constexpr double kNearNcc = 0.75;  ///< of the texture's fine band: the pose is almost right
 constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
 constexpr double kMaxStep_m = 0.025, kMaxStep_rad = 0.15;
 constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the pattern's own contrast
@@ -114,6 +115,7 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
                             const FaceTexture* texture, int iterations, int reach_px) {
   Refined refined;
   refined.X_CM = X_CM;
+  bool near = false;  // so much that the coarse band, which sees less, would only lead astray
   for (int i = 0; i < iterations; ++i) {
     PoseEquations equations;
     equations.AddPrior(kPrior_m, kPrior_rad);
@@ -121,11 +123,19 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     const std::array<EyePose, 2> poses = {EyePose(*view[0].geometry, refined.X_CM),
                                           EyePose(*view[1].geometry, refined.X_CM)};
     const int reach = i == 0 ? reach_px : i == 1 ? std::min(reach_px, 6) : 4;
-    const Band band = i < iterations / 2 ? kCoarseBand : kFineBand;
+    const Band band = i < iterations / 2 && !near ? kCoarseBand : kFineBand;
     if (texture != nullptr) {
-      AddContours(view, poses, reach, config_.outline_weight_with_texture, &equations,
-                  &refined.contour);
-      AddTexture(view, poses, band, *texture, &equations, &refined);
+      AddContours(view, poses, reach,
+                  texture->enrolled() ? config_.outline_weight_enrolled
+                                      : config_.outline_weight_with_texture,
+                  &equations, &refined.contour);
+      if (i == 0) {
+        PoseEquations fine = equations;
+        AddTexture(view, poses, kFineBand, *texture, &fine, &refined);
+        near = refined.texture_ncc > kNearNcc;
+        if (near) equations = fine;
+      }
+      if (i > 0 || !near) AddTexture(view, poses, band, *texture, &equations, &refined);
     } else {
       AddContours(view, poses, reach, config_.outline_weight, &equations, &refined.contour);
       AddGenericFace(view, poses, band, config_.stereo_weight, &equations, &refined);

@@ -14,6 +14,7 @@ struct RefinerConfig {
   void Serialize(A* a) {
     a->Visit("outline_weight", &outline_weight, InRange(0.0, 10.0));
     a->Visit("outline_weight_with_texture", &outline_weight_with_texture, InRange(0.0, 10.0));
+    a->Visit("outline_weight_enrolled", &outline_weight_enrolled, InRange(0.0, 10.0));
     a->Visit("hairline_weight", &hairline_weight, InRange(0.0, 10.0));
     a->Visit("pattern_weight", &pattern_weight, InRange(0.0, 10.0));
     a->Visit("texture_weight", &texture_weight, InRange(0.0, 10.0));
@@ -22,6 +23,7 @@ struct RefinerConfig {
   }
   double outline_weight{1};
   double outline_weight_with_texture{0.5};
+  double outline_weight_enrolled{0.2};
   double hairline_weight{0.15};  ///< relative to the outline's
   double pattern_weight{0.8};    ///< generic face
   double texture_weight{0.5};

@@ -7,7 +7,8 @@ namespace visavis {
 namespace {
 
 constexpr double kBoxRadius_m = 0.17;
-constexpr int kMoreRounds = 2;  ///< of iterations, where a tracked pose has not come to rest
+constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the enrolled face
+constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
 constexpr int kLeastBox_px = 32;
 constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
@@ -42,6 +43,10 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGe
       bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
              BandImages(pair_.eye(1).width, pair_.eye(1).height)},
       population_(settings.refined.population, settings.seed) {
+  if (head.face) {
+    enrolled_.emplace(head_.face);
+    enrolled_->Remember(*head.face);
+  }
   Reset();
 }
 
@@ -64,15 +69,22 @@ void RefinedEstimator::Reset() {
 void RefinedEstimator::ForgetFace() {
   texture_.Forget();
   anchor_.Forget();
-  is_enrolled_ = false;
   strange_in_a_row_ = 0;
 }
 
 void RefinedEstimator::RememberEnrolled() {
-  if (!head_.head.face || is_enrolled_) return;
+  if (!enrolled_ || texture_.enrolled()) return;
   ForgetFace();
   texture_.Remember(*head_.head.face);
-  is_enrolled_ = true;
+}
+
+void RefinedEstimator::LookForEnrolled() {
+  if (!enrolled_ || texture_.enrolled() || frames_ % kEnrolledEvery != 0) return;
+  const Candidate known =
+      RefineFrom(candidate_.refined.X_CM, &*enrolled_, settings_.refined.search_iterations, 7);
+  if (!(known.refined.texture_ncc > settings_.refined.evidence.enrolled_texture_ncc)) return;
+  RememberEnrolled();
+  candidate_ = known;
 }
 
 void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
@@ -161,7 +173,10 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   const double distance = (X_elite.translation() - best.refined.X_CM.translation()).norm();
   if (distance > 0.015 && population_.best().fitness > best.score.total() + 0.1) {
     const Candidate other = RefineFrom(X_elite, texture, settings_.refined.iterations, 9);
-    if (other.score.total() > best.score.total() + 0.05) best = other;
+    const bool better = texture != nullptr
+                            ? other.refined.texture_ncc > best.refined.texture_ncc + 0.05
+                            : other.score.total() > best.score.total() + 0.05;
+    if (better) best = other;
   }
   const Vector6d phi = PhiFromTransform(best.refined.X_CM);
   population_.Insert(phi, fitness(phi));
@@ -260,7 +275,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
 
 void RefinedEstimator::Learn() {
   if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
-  if (estimate_.status != TrackStatus::kTracking || is_enrolled_) return;
+  if (estimate_.status != TrackStatus::kTracking || texture_.enrolled()) return;
   for (const Band band : {kFineBand, kCoarseBand}) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (view_[i].seen())
@@ -325,7 +340,8 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   }
   timer->Enter(Stage::kOther);
   Judge(good);
-  if (good && texture_.learned() && !is_enrolled_) MoveAnchor();
+  if (good) LookForEnrolled();
+  if (good && texture_.learned() && !texture_.enrolled()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
   estimate_.X_CM = *X_CM_ * X_MR_;

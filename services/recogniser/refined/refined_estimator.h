@@ -55,6 +55,8 @@ class RefinedEstimator final : public Estimator {
  private:
   void ForgetFace();
   void RememberEnrolled();
+  /// Whether the face that is tracked as a stranger's is the enrolled one after all.
+  void LookForEnrolled();
   void CentreOn(const Eigen::Vector3d& p_CM);
   void FollowHead();
   void TakePictures(const StereoFrame& frame);
@@ -81,7 +83,7 @@ class RefinedEstimator final : public Estimator {
   bool IsKnownFace(const Candidate& candidate, double least_texture_ncc) const;
   double FindTextureNcc() const {
     const EvidenceConfig& e = settings_.refined.evidence;
-    return is_enrolled_ ? e.enrolled_texture_ncc : e.keep_texture_ncc;
+    return texture_.enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc;
   }
   bool IsNewFace();
   void Judge(bool good);
@@ -94,7 +96,7 @@ class RefinedEstimator final : public Estimator {
   const RigidTransform X_MR_;  ///< the frame that poses are reported in
   WorkingPair pair_;
   FaceTexture texture_;
-  bool is_enrolled_{false};  ///< texture_ is the enrolled face's, in its own fixed frame
+  std::optional<FaceTexture> enrolled_;
   HeadAnchor anchor_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
   std::array<bool, 2> colors_started_{};

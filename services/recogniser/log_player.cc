@@ -1,4 +1,4 @@
-#include "tests/support/log_player.h"
+#include "services/recogniser/log_player.h"
 
 #include <stdexcept>
 

@@ -1,0 +1,106 @@
+#include "services/recogniser/enrol/enrolment.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "services/recogniser/log_player.h"
+#include "services/recogniser/refined/refined_estimator.h"
+
+namespace visavis {
+namespace {
+
+constexpr int kReadings = 3, kMostRounds = 60;
+constexpr double kStill_m = 2e-5;  ///< shape changes less in a round: done
+constexpr std::size_t kMostViews = 60, kFewestViews = 3;
+constexpr double kMiddleDistance = 0.5;
+
+double NoTime() { return 0; }
+
+struct Reading {
+  ViewSelection selection;
+  std::array<ColorModel, 2> colors;
+  int frames{0}, tracked{0};
+};
+
+/// Tracks @p head through the recording.
+Reading Track(const std::string& log, const RecogniserConfig& config, const HeadGeometry& head) {
+  LogPlayer player(log);
+  RefinedEstimator estimator(config.RefinedSettings(), head, player.rig());
+  StageTimer timer(&NoTime);
+  const auto X_RM = MakeTransform(Eigen::Matrix3d::Identity(), -head.p_MR_m);
+  Reading reading;
+  while (const LogPlayer::Pair* pair = player.Next()) {
+    const bool both = pair->frame.right.has_value() && pair->frame.left.has_value();
+    const Estimate& estimate = estimator.Process(pair->frame, pair->step, &timer);
+    const bool tracked = both && estimate.status == TrackStatus::kTracking;
+    const RigidTransform X_CM = tracked ? *estimate.X_CM * X_RM : RigidTransform::Identity();
+    reading.selection.Add(reading.frames, tracked ? &X_CM : nullptr);
+    reading.tracked += tracked;
+    ++reading.frames;
+  }
+  reading.colors = estimator.colors();
+  return reading;
+}
+
+/// The pictures of @p views, in a bundle.
+std::unique_ptr<HeadBundle> BundleOf(const std::string& log, const RecogniserConfig& config,
+                                     const HeadGeometry& head, const Reading& reading) {
+  LogPlayer player(log);
+  const RefinedSettings settings = config.RefinedSettings();
+  const double distance_m = kMiddleDistance * (settings.space.min[2] + settings.space.max[2]);
+  auto bundle = std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(), distance_m,
+                                             head, reading.colors);
+  const auto views = reading.selection.Views(kMostViews);
+  auto view = views.begin();
+  std::int64_t frame = 0;
+  while (const LogPlayer::Pair* pair = player.Next()) {
+    if (view == views.end()) break;
+    if (frame++ != view->frame) continue;
+    bundle->Add(pair->frame, view->X_CM);
+    ++view;
+  }
+  return bundle;
+}
+
+}  // namespace
+
+Enrolment Enrol(const std::string& log, const RecogniserConfig& config) {
+  Enrolment enrolment;
+  enrolment.head = config.RefinedHead();
+  const HeadSurface start = enrolment.head.surface;
+  for (int k = 0; k < kReadings; ++k) {
+    const Reading reading = Track(log, config, enrolment.head);
+    const std::size_t views = reading.selection.Views(kMostViews).size();
+    if (views < kFewestViews) {
+      throw std::invalid_argument(log + ": shows a face in " + std::to_string(reading.tracked) +
+                                  " of " + std::to_string(reading.frames) + " pairs, from " +
+                                  std::to_string(views) + " directions; must be at least " +
+                                  std::to_string(kFewestViews) +
+                                  " directions: let the person turn the head slowly to all sides");
+    }
+    const auto bundle = BundleOf(log, config, enrolment.head, reading);
+    for (int round = 0; round < kMostRounds; ++round) {
+      const HeadBundle::Agreement agreement = bundle->Round();
+      if (k == 0 && round == 0) enrolment.before = agreement;
+      enrolment.after = agreement;
+      if (agreement.moved_m < kStill_m) break;
+    }
+    enrolment.head = bundle->Enrolled();
+    enrolment.frames = reading.frames;
+    enrolment.tracked = reading.tracked;
+    enrolment.views = views;
+    enrolment.range = reading.selection.DirectionRange();
+  }
+  double sum = 0;
+  const auto& points = enrolment.head.face->points;
+  for (const Eigen::Vector3f& p : points) {
+    const double change = static_cast<double>(p.norm() - start.Radius(p.normalized()));
+    sum += change * change;
+  }
+  enrolment.rms_change_mm = 1e3 * std::sqrt(sum / static_cast<double>(points.size()));
+  return enrolment;
+}
+
+}  // namespace visavis
