@@ -10,8 +10,8 @@
 
 #include "common/config/config_reader.h"
 #include "common/core/clock.h"
-#include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/log_player.h"
+#include "services/recogniser/recogniser_config.h"
 
 namespace visavis {
 namespace {

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "common/core/clock.h"
+#include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
-#include "services/recogniser/log_player.h"
 
 namespace visavis {
 namespace {
