@@ -77,17 +77,19 @@ RecogniserService::~RecogniserService() = default;
 // All of the new rig or, where any of it throws, nothing.
 void RecogniserService::SetRig(const RigDescription& description) {
   auto preparer = std::make_unique<FramePreparer>(description.rig);
-  auto estimator = NewEstimator(description.rig);
+  auto estimator = NewEstimator(estimator_name_, description.rig);
   ego_motion_.SetRig(description);
   preparer_ = std::move(preparer);
   estimator_ = std::move(estimator);
   rig_ = description.rig;
+  swap_probe_ = std::make_unique<SwapProbe>([this] { return NewEstimator("refined", *rig_); });
   BeginTrack();
 }
 
-std::unique_ptr<Estimator> RecogniserService::NewEstimator(const StereoRig& rig) const {
+std::unique_ptr<Estimator> RecogniserService::NewEstimator(const std::string& name,
+                                                           const StereoRig& rig) const {
   std::unique_ptr<Estimator> estimator;
-  if (estimator_name_ == "refined") {
+  if (name == "refined") {
     estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), refined_head_, rig);
   } else {
     estimator =
@@ -100,6 +102,8 @@ std::unique_ptr<Estimator> RecogniserService::NewEstimator(const StereoRig& rig)
 
 // The head is looked for afresh: no motion leads to the next pair.
 void RecogniserService::BeginTrack() {
+  picture_watch_.Forget();
+  if (swap_probe_) swap_probe_->Forget();
   last_utime_us_.reset();
   head_was_tracked_ = false;
 }
@@ -122,10 +126,9 @@ void RecogniserService::BeginSessionIfPairsJumpBack(std::int64_t utime_us) {
     ProcessWaiting();
     ego_motion_.ForgetSamplesAfter(utime_us + kNewSessionUs);
     if (estimator_) estimator_->Reset();
-    last_utime_us_.reset();
     last_image_seq_.reset();
     pairs_ = 0;
-    head_was_tracked_ = false;
+    BeginTrack();
     newest_pair_us_ = utime_us;
   }
 }
@@ -176,7 +179,7 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
   if (is_other) estimator_name_ = message.estimator;
   if (!estimator_) return;
   if (is_other) {
-    estimator_ = NewEstimator(*rig_);
+    estimator_ = NewEstimator(estimator_name_, *rig_);
     BeginTrack();
   }
   estimator_->SetFeedforward(feedforward_);
@@ -219,7 +222,9 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
   std::string refused;
   if (estimator_ && !paused_) {
     try {
-      const StereoFrame frame = preparer_->Prepare(FromMessage(message, *rig_));
+      StereoImages images = FromMessage(message, *rig_);
+      picture_watch_.TakeOutStale(&images);
+      const StereoFrame frame = preparer_->Prepare(images);
       timer_.Enter(Stage::kOther);
       const CameraStep step =
           last_utime_us_ ? ego_motion_.Between(*last_utime_us_, message.utime) : CameraStep{};
@@ -236,6 +241,34 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
     newest_pair_us_ = std::max(newest_pair_us_, message.utime);  // of pairs that were any good
   }
   if (!refused.empty()) context_.status->Rejected(refused, context_.clock->NowUs());
+  if (estimate) LookForSwappedEyes(message, estimate->status == TrackStatus::kTracking);
+  Complain("stale_images", picture_watch_.complaint());
+}
+
+// After the pair's pose went out: this costs as much as a search.
+void RecogniserService::LookForSwappedEyes(const images_t& message, bool is_tracking) {
+  const bool are_alike =
+      rig_->right.width == rig_->left.width && rig_->right.height == rig_->left.height;
+  if (swap_probe_->IsDue(is_tracking) && message.images.size() == 2 && are_alike) {
+    StereoImages images = FromMessage(message, *rig_);
+    std::swap(images.right, images.left);
+    swap_probe_->Try(preparer_->Prepare(images), &timer_);
+  }
+  if (swap_probe_->found()) ++swapped_pairs_;
+  Complain("swapped_eyes",
+           swap_probe_->found()
+               ? "images of left and right camera are swapped: a head is there only "
+                 "when they are exchanged; exchange the cameras or image_types"
+               : "");
+}
+
+// Tells of a condition as long as it holds; it stays the last error.
+void RecogniserService::Complain(const std::string& name, const std::string& complaint) {
+  std::string& told = told_[name];
+  if (told == complaint) return;
+  told = complaint;
+  context_.status->SetCondition(name, complaint);
+  if (!complaint.empty()) context_.status->Error(complaint, context_.clock->NowUs());
 }
 
 void RecogniserService::PublishEstimate(const images_t& message, const Estimate* estimate,
@@ -310,6 +343,9 @@ void RecogniserService::UpdateStatus() {
                                                   : "");
   context_.status->SetCounter("pairs_without_motion", pairs_without_motion_);
   context_.status->SetCounter("pairs_with_extrapolated_motion", extrapolated_);
+  context_.status->SetCounter("pairs_with_stale_right_image", picture_watch_.num_stale_right());
+  context_.status->SetCounter("pairs_with_stale_left_image", picture_watch_.num_stale_left());
+  context_.status->SetCounter("pairs_with_swapped_images", swapped_pairs_);
 }
 
 }  // namespace visavis

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,7 +12,9 @@
 #include "services/recogniser/ego_motion.h"
 #include "services/recogniser/estimator.h"
 #include "services/recogniser/frame_preparer.h"
+#include "services/recogniser/picture_watch.h"
 #include "services/recogniser/recogniser_config.h"
+#include "services/recogniser/swap_probe.h"
 #include "visavis/arm_state_t.hpp"
 #include "visavis/ga_population_t.hpp"
 #include "visavis/head_pose_t.hpp"
@@ -48,7 +51,7 @@ class RecogniserService final : public Service {
   void OnCommand(const recogniser_command_t& message);
 
   void SetRig(const RigDescription& rig);
-  std::unique_ptr<Estimator> NewEstimator(const StereoRig& rig) const;
+  std::unique_ptr<Estimator> NewEstimator(const std::string& name, const StereoRig& rig) const;
   void BeginTrack();
   void BeginSessionIfPairsJumpBack(std::int64_t utime_us);
   void ProcessWaitingOfOldSession(std::int64_t motion_utime_us);
@@ -59,6 +62,8 @@ class RecogniserService final : public Service {
   void FillMotion(std::int64_t utime_us, const Estimate& estimate);
   void PublishTiming(std::int64_t received_us);
   void PublishPopulation(std::int64_t utime_us);
+  void LookForSwappedEyes(const images_t& message, bool is_tracking);
+  void Complain(const std::string& name, const std::string& complaint);
   void TellMissing(const images_t& message);
 
   const RecogniserConfig config_;
@@ -69,6 +74,9 @@ class RecogniserService final : public Service {
   EgoMotion ego_motion_;
   std::unique_ptr<FramePreparer> preparer_;
   std::unique_ptr<Estimator> estimator_;
+  PictureWatch picture_watch_;
+  std::unique_ptr<SwapProbe> swap_probe_;
+  std::map<std::string, std::string> told_;  // conditions by name
   FeedforwardMode feedforward_;
   const HeadGeometry refined_head_;  // read once: its file may be large
   std::string estimator_name_;       // in use
@@ -82,6 +90,7 @@ class RecogniserService final : public Service {
   recogniser_timing_t timing_{};
   ga_population_t population_{};
   std::int64_t pairs_{0}, newest_pair_us_{0}, pairs_without_motion_{0}, extrapolated_{0};
+  std::int64_t swapped_pairs_{0};
   std::optional<std::int64_t> last_utime_us_, last_image_seq_;
   std::optional<SearchSpace> commanded_space_;  // outlives a change of the rig
   bool paused_{false};

@@ -30,10 +30,14 @@ SearchSpace SearchSpace::FromConfig(const SearchSpaceConfig& config) {
     c.min_x_mm = c.min_y_mm = -100;
     c.max_x_mm = c.max_y_mm = 100;
   }
-  const double angle = c.max_angle_deg * M_PI / 180;
+  const auto angle = [&](double own_deg) {
+    return (own_deg > 0 ? own_deg : c.max_angle_deg) * M_PI / 180;
+  };
+  const double phi = angle(c.max_phi_deg), theta = angle(c.max_theta_deg),
+               psi = angle(c.max_psi_deg);
   SearchSpace space;
-  space.min << c.min_x_mm / 1000, c.min_y_mm / 1000, c.min_z_mm / 1000, -angle, -angle, -angle;
-  space.max << c.max_x_mm / 1000, c.max_y_mm / 1000, c.max_z_mm / 1000, angle, angle, angle;
+  space.min << c.min_x_mm / 1000, c.min_y_mm / 1000, c.min_z_mm / 1000, -phi, -theta, -psi;
+  space.max << c.max_x_mm / 1000, c.max_y_mm / 1000, c.max_z_mm / 1000, phi, theta, psi;
   return space;
 }
 

@@ -19,6 +19,9 @@ struct SearchSpaceConfig {
     a->Visit("min_z_mm", &min_z_mm, InRange(300.0, 5000.0, "mm"));
     a->Visit("max_z_mm", &max_z_mm, InRange(300.0, 5000.0, "mm"));
     a->Visit("max_angle_deg", &max_angle_deg, InRange(1.0, 80.0, "deg"));
+    a->Visit("max_phi_deg", &max_phi_deg, InRange(0.0, 80.0, "deg"));
+    a->Visit("max_theta_deg", &max_theta_deg, InRange(0.0, 80.0, "deg"));
+    a->Visit("max_psi_deg", &max_psi_deg, InRange(0.0, 80.0, "deg"));
     a->Visit("recentre", &recentre);
   }
   /// @throws FieldError, keys under @p prefix.
@@ -31,7 +34,9 @@ struct SearchSpaceConfig {
   double min_y_mm{-200}, max_y_mm{200};
   double min_z_mm{900}, max_z_mm{1200};
   double max_angle_deg{20};  ///< each of Phi, theta, psi within +- this
-  bool recentre{true};       ///< custom: move the position's range with the tracked head
+  /// One axis by itself: about the optical axis, the vertical, the horizontal; 0: max_angle_deg.
+  double max_phi_deg{0}, max_theta_deg{0}, max_psi_deg{0};
+  bool recentre{true};  ///< custom: move the position's range with the tracked head
 };
 
 /// The box of poses that the GA searches.

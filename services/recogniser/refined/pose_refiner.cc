@@ -15,6 +15,8 @@ constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the patter
 // those near the outline.
 constexpr float kMinFacing = 0.6f;
 constexpr float kStereoSigma = 0.35f;  ///< of the face's contrast
+// One eye's depth comes from the learned face's size, which both eyes fixed, not from the outline.
+constexpr double kOneEyeOutline = 0.05;
 // Depth comes from both eyes: outlines take a large head for a near one.
 constexpr double kAnchorStereo = 2;
 
@@ -125,10 +127,11 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     const int reach = i == 0 ? reach_px : i == 1 ? std::min(reach_px, 6) : 4;
     const Band band = i < iterations / 2 && !near ? kCoarseBand : kFineBand;
     if (texture != nullptr) {
-      AddContours(view, poses, reach,
-                  texture->enrolled() ? config_.outline_weight_enrolled
-                                      : config_.outline_weight_with_texture,
-                  &equations, &refined.contour);
+      const bool both = view[0].seen() && view[1].seen();
+      const double outline = texture->enrolled() ? config_.outline_weight_enrolled
+                                                 : config_.outline_weight_with_texture;
+      AddContours(view, poses, reach, (both ? 1 : kOneEyeOutline) * outline, &equations,
+                  &refined.contour);
       if (i == 0) {
         PoseEquations fine = equations;
         AddTexture(view, poses, kFineBand, *texture, &fine, &refined);

@@ -29,6 +29,7 @@ struct EvidenceConfig {
     a->Visit("keep_stereo_ncc", &keep_stereo_ncc, InRange(-1.0, 1.0));
     a->Visit("confirm_frames", &confirm_frames, InRange(1, 100));
     a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
+    a->Visit("one_eye_frames", &one_eye_frames, InRange(0, 1000000));
   }
   double lock_ncc{0.2};               ///< generic pattern, before TRACKING
   double lock_gray_ncc{0.5};          ///< the same where the pictures are grey
@@ -42,6 +43,7 @@ struct EvidenceConfig {
   double keep_stereo_ncc{0.5};        ///< agreement of both eyes, while TRACKING
   int confirm_frames{1};              ///< good frames in a row before TRACKING
   int strange_frames{3};              ///< so often a face other than the learned one: learn it anew
+  int one_eye_frames{10};             ///< so long one eye keeps a track: its depth drifts
 };
 
 /// Which head is looked for.

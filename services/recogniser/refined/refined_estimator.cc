@@ -63,7 +63,7 @@ void RefinedEstimator::Reset() {
   if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
   estimate_ = Estimate{};
   frames_ = 0;
-  good_in_a_row_ = bad_in_a_row_ = 0;
+  good_in_a_row_ = bad_in_a_row_ = one_eye_in_a_row_ = 0;
 }
 
 void RefinedEstimator::ForgetFace() {
@@ -318,11 +318,13 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   timer->Enter(Stage::kMap);
   TakePictures(frame);
   BuildMaps(tracked ? &*X_CM_ : nullptr);
+  one_eye_in_a_row_ = BothEyes() ? 0 : one_eye_in_a_row_ + 1;
   bool good = false;
   if (tracked) {
     timer->Enter(Stage::kRefinement);
     candidate_ = Track();
-    good = texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_);
+    good = one_eye_in_a_row_ <= e.one_eye_frames &&
+           (texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_));
     if (!good) {
       timer->Enter(Stage::kMap);
       BuildMaps(nullptr);
@@ -332,7 +334,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
     candidate_ = Search();
-    // One eye can keep a track, not begin one: its depth is a guess.
+    // One eye can keep a track for a while, not begin one: its depth is a guess.
     good = BothEyes() && (IsKnownFace(candidate_, FindTextureNcc()) || IsNewFace());
     if (!good) colors_ = colors_before_;
   } else {
@@ -340,8 +342,8 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   }
   timer->Enter(Stage::kOther);
   Judge(good);
-  if (good) LookForEnrolled();
-  if (good && texture_.learned() && !texture_.enrolled()) MoveAnchor();
+  if (good && BothEyes()) LookForEnrolled();
+  if (good && BothEyes() && texture_.learned() && !texture_.enrolled()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
   estimate_.X_CM = *X_CM_ * X_MR_;
@@ -350,7 +352,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   estimate_.covariance =
       Covariance(candidate_.refined.information, X_CM_->linear() * X_MR_.translation());
   total_generations_ += estimate_.generations;
-  if (good) Learn();
+  if (good && BothEyes()) Learn();  // one eye's depth is no master
   ++frames_;
   return estimate_;
 }

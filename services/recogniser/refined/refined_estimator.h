@@ -113,7 +113,7 @@ class RefinedEstimator final : public Estimator {
   std::vector<Candidate> candidates_;
   Estimate estimate_;
   std::int64_t frames_{0}, total_generations_{0};
-  int good_in_a_row_{0}, bad_in_a_row_{0}, strange_in_a_row_{0};
+  int good_in_a_row_{0}, bad_in_a_row_{0}, strange_in_a_row_{0}, one_eye_in_a_row_{0};
 };
 
 }  // namespace visavis

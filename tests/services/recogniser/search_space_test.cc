@@ -51,6 +51,19 @@ TEST(SearchSpaceTest, ACustomSpaceIsItsKeys) {
   EXPECT_TRUE(space.range().isApprox(PhiOf(30, 70, 100, 30, 30, 30)));
 }
 
+TEST(SearchSpaceTest, AnAxisMayHaveARangeOfItsOwn) {
+  SearchSpaceConfig config;
+  config.preset = "custom";
+  config.max_angle_deg = 15;
+  config.max_theta_deg = 60;
+  config.max_psi_deg = 40;
+  const SearchSpace space = SearchSpace::FromConfig(config);
+  EXPECT_TRUE(space.min.tail<3>().isApprox(PhiOf(0, 0, 0, -15, -60, -40).tail<3>()));
+  EXPECT_TRUE(space.max.tail<3>().isApprox(PhiOf(0, 0, 0, 15, 60, 40).tail<3>()));
+  config.preset = "wide";
+  EXPECT_EQ(SearchSpace::FromConfig(config).max, SpaceOf("wide").max);
+}
+
 TEST(SearchSpaceTest, TheBorderIsAShareOfEachRangeAndAllBeyond) {
   const SearchSpace space = SpaceOf("paper");  // 5 %: 10 mm of t_x, 15 mm of t_z, 2 deg
   EXPECT_FALSE(space.AtBorder(PhiOf(-89, 89, 916, 17.9, -17.9, 17.9), 0.05));
@@ -125,9 +138,11 @@ struct SearchFile {
 
 TEST(SearchSpaceConfigTest, EachKeyHoldsItsRange) {
   const std::pair<const char*, const char*> refused[] = {
-      {"preset", "narrow"},  {"min_x_mm", "-3001"},   {"max_x_mm", "3001"},  {"min_y_mm", ".inf"},
-      {"max_y_mm", ".nan"},  {"min_z_mm", "299"},     {"max_z_mm", "5001"},  {"min_z_mm", "0.9"},
-      {"recentre", "often"}, {"max_angle_deg", "81"}, {"max_angle_deg", "0"}};
+      {"preset", "narrow"},    {"min_x_mm", "-3001"},  {"max_x_mm", "3001"},
+      {"min_y_mm", ".inf"},    {"max_y_mm", ".nan"},   {"min_z_mm", "299"},
+      {"max_z_mm", "5001"},    {"min_z_mm", "0.9"},    {"recentre", "often"},
+      {"max_angle_deg", "81"}, {"max_angle_deg", "0"}, {"max_theta_deg", "81"},
+      {"max_psi_deg", "-1"}};
   for (const auto& [key, value] : refused) {
     EXPECT_THAT([&] { LoadConfig<SearchFile>("", {std::string("search.") + key + "=" + value}); },
                 ::testing::ThrowsMessage<ConfigError>(

@@ -75,6 +75,13 @@ arm_state_t ArmAt(std::int64_t t_us, double slide_m, double turn_rad, double sli
   return message;
 }
 
+std::int64_t CounterOf(const service_status_t& status, const std::string& name) {
+  for (std::size_t i = 0; i < status.counter_names.size(); ++i) {
+    if (status.counter_names[i] == name) return status.counters[i];
+  }
+  return -1;
+}
+
 ServiceBench::ServiceBench(const RecogniserConfig& config, const std::string& prefix,
                            std::int64_t clock_offset_us)
     : offset_us_(kBaseUs + clock_offset_us),

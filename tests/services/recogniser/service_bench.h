@@ -33,6 +33,9 @@ images_t PairOf(const StereoFrame& frame, std::int64_t t_us, bool jpeg = false);
 arm_state_t ArmAt(std::int64_t t_us, double slide_m, double turn_rad, double slide_m_s = 0,
                   double turn_rad_s = 0);
 
+/// The status' counter of that name; -1: it has none.
+std::int64_t CounterOf(const service_status_t& status, const std::string& name);
+
 /// The recogniser on a LogBus, driven as a replay drives it. Times are us after kBaseUs.
 class ServiceBench {
  public:

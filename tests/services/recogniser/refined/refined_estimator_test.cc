@@ -112,6 +112,16 @@ TEST_F(RefinedEstimatorTest, OneEyeGoesOnWhereBothWere) {
   ExpectTracked(See(), 4, 2);
 }
 
+TEST_F(RefinedEstimatorTest, OneEyeAloneIsLostAfterAWhileAndFoundAgainByBoth) {
+  for (int i = 0; i < 5; ++i) SeeHeadAt(kPlace);
+  const int frames = EvidenceConfig{}.one_eye_frames;
+  for (int i = 0; i < frames; ++i) EXPECT_EQ(See(Eyes::kRight).status, TrackStatus::kTracking);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(See(Eyes::kRight).status, TrackStatus::kLost);
+  int lost = 0;
+  while (lost < 5 && See().status != TrackStatus::kTracking) ++lost;
+  ExpectTracked(See(), 4, 2);
+}
+
 TEST_F(RefinedEstimatorTest, ATrackedFrameAllocatesNothing) {
   if (NumMallocs() < 0) GTEST_SKIP() << "mallocs cannot be counted under a sanitizer";
   for (int i = 0; i < 30; ++i) SeeHeadAt(kPlace);
