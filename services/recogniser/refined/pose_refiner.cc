@@ -38,11 +38,7 @@ const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
 const std::vector<OutlineMeasurement>& PoseRefiner::Outline(const StereoView& view, std::size_t eye,
                                                             const RigidTransform& X_CM,
                                                             int reach_px) {
-  PoseEquations ignored;
-  ContourFit ignored_too;
-  contours_.Add(view[eye], EyePose(*view[eye].geometry, X_CM), reach_px, 1, 0, &ignored,
-                &ignored_too);
-  return contours_.outline();
+  return contours_.MeasureOutline(view[eye], EyePose(*view[eye].geometry, X_CM), reach_px);
 }
 
 void PoseRefiner::AddContours(const StereoView& view, const std::array<EyePose, 2>& poses,

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "services/recogniser/refined/face_kernel.h"
+
+namespace visavis {
+
+/// Value and gradient of a band at a place of the picture [levels, levels a px of the picture].
+struct BandSample {
+  float value, du, dv;
+};
+
+/// At picture coordinates (u, v) [px], bilinear; one place at a time in double precision. False
+/// within two samples of the border or outside.
+bool SampleBand(const BandView& band, double u, double v, BandSample* sample);
+
+/// The value alone, at the nearest sample; false outside.
+bool NearestSample(const BandView& band, double u, double v, float* value);
+
+}  // namespace visavis
