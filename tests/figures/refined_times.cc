@@ -1,12 +1,14 @@
 // Times of the refined estimator's whole frames on a recorded log: processor time of one thread, so
-// that other programs count little. Usage: refined_times tracking|search|start LOG.lcm
+// that other programs count little. Usage: refined_times tracking|search|start LOG.lcm [SEED]
 //
 // tracking: the log's pairs one after the other, from an unknown pose; frames that were tracked
 // before and after count. search: each pair alone, as the first of a session. start: the estimator
 // made anew, five times. Prints: count, median and 99th percentile [us], TRACKING % of the count,
 // resident memory of the process [MB] after the first tenth of the log and at its end.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <fstream>
@@ -51,9 +53,11 @@ Times Start(const StereoRig& rig) {
   return times;
 }
 
-Times Play(const std::string& log, bool search) {
+Times Play(const std::string& log, bool search, std::uint64_t seed) {
   LogPlayer player(log);
-  RefinedEstimator estimator(RecogniserConfig{}.RefinedSettings(), HeadGeometry{}, player.rig());
+  RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
+  settings.seed = seed;
+  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig());
   StageTimer timer(&ProcessorSeconds);
   Times times;
   bool was_tracking = false;
@@ -86,14 +90,15 @@ void Print(Times times) {
 }  // namespace visavis
 
 int main(int argc, char* argv[]) {
-  const std::string what = argc == 3 ? argv[1] : "";
+  const std::string what = argc == 3 || argc == 4 ? argv[1] : "";
   if (what != "tracking" && what != "search" && what != "start") {
-    std::fputs("usage: refined_times tracking|search|start LOG.lcm\n", stderr);
+    std::fputs("usage: refined_times tracking|search|start LOG.lcm [SEED]\n", stderr);
     return 2;
   }
+  const auto seed = static_cast<std::uint64_t>(argc == 4 ? std::max(0, std::atoi(argv[3])) : 1);
   try {
     visavis::Print(what == "start" ? visavis::Start(visavis::LogPlayer(argv[2]).rig())
-                                   : visavis::Play(argv[2], what == "search"));
+                                   : visavis::Play(argv[2], what == "search", seed));
     return 0;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "refined_times: %s\n", e.what());

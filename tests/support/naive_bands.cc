@@ -1,5 +1,6 @@
 #include "tests/support/naive_bands.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace visavis {
@@ -13,7 +14,79 @@ double At(const BandView& band, int x, int y) {
 /// Linear between @p from and @p to.
 double Blend(double share, double from, double to) { return (1 - share) * from + share * to; }
 
+struct Picture {
+  Picture(int columns, int rows)
+      : width(columns), height(rows), data(static_cast<std::size_t>(columns * rows)) {}
+  double& At(int x, int y) { return data[static_cast<std::size_t>(y * width + x)]; }
+  /// The border repeats.
+  double Near(int x, int y) const {
+    x = std::clamp(x, 0, width - 1);
+    y = std::clamp(y, 0, height - 1);
+    return data[static_cast<std::size_t>(y * width + x)];
+  }
+  int width, height;
+  std::vector<double> data;
+};
+
+Picture Halved(const Picture& from) {
+  Picture to(from.width / 2, from.height / 2);
+  for (int y = 0; y < to.height; ++y) {
+    for (int x = 0; x < to.width; ++x) {
+      to.At(x, y) = (from.Near(2 * x, 2 * y) + from.Near(2 * x + 1, 2 * y) +
+                     from.Near(2 * x, 2 * y + 1) + from.Near(2 * x + 1, 2 * y + 1)) /
+                    4;
+    }
+  }
+  return to;
+}
+
+Picture Smooth(const Picture& from, int times) {
+  Picture to = from;
+  for (int k = 0; k < times; ++k) {
+    const Picture old = to;
+    for (int y = 0; y < to.height; ++y) {
+      for (int x = 0; x < to.width; ++x) {
+        double sum = 0;
+        for (int j = -1; j <= 1; ++j) {
+          for (int i = -1; i <= 1; ++i)
+            sum += (i == 0 ? 2 : 1) * (j == 0 ? 2 : 1) * old.Near(x + i, y + j);
+        }
+        to.At(x, y) = sum / 16;
+      }
+    }
+  }
+  return to;
+}
+
+std::vector<double> Difference(const Picture& fine, const Picture& coarse) {
+  std::vector<double> difference;
+  for (int y = 0; y < fine.height; ++y) {
+    for (int x = 0; x < fine.width; ++x) {
+      const int i = x / 2, j = y / 2, ni = x % 2 == 0 ? i - 1 : i + 1,
+                nj = y % 2 == 0 ? j - 1 : j + 1;
+      const double near = Blend(0.25, coarse.Near(i, j), coarse.Near(i, nj));
+      const double far = Blend(0.25, coarse.Near(ni, j), coarse.Near(ni, nj));
+      difference.push_back(fine.Near(x, y) - Blend(0.25, near, far));
+    }
+  }
+  return difference;
+}
+
 }  // namespace
+
+NaiveBands::NaiveBands(const ImageView& rgb) {
+  Picture full(rgb.width, rgb.height);
+  for (int y = 0; y < rgb.height; ++y) {
+    for (int x = 0; x < rgb.width; ++x) {
+      const std::uint8_t* p = rgb.row(y) + 3 * x;
+      full.At(x, y) = (77.0 * p[0] + 150.0 * p[1] + 29.0 * p[2]) / 256;
+    }
+  }
+  const Picture half = Smooth(Halved(full), 1), quarter = Halved(half);
+  bands[0] = Difference(half, Smooth(quarter, 4));
+  const Picture smooth_quarter = Smooth(quarter, 1);
+  bands[1] = Difference(smooth_quarter, Smooth(Halved(smooth_quarter), 4));
+}
 
 bool SampleBand(const BandView& band, double u, double v, BandSample* sample) {
   const auto scale = static_cast<double>(band.scale);

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
+#include "common/image/image.h"
 #include "services/recogniser/refined/face_kernel.h"
 
 namespace visavis {
@@ -15,5 +19,13 @@ bool SampleBand(const BandView& band, double u, double v, BandSample* sample);
 
 /// The value alone, at the nearest sample; false outside.
 bool NearestSample(const BandView& band, double u, double v, float* value);
+
+/// Both bands of a whole RGB picture, row by row [levels], in double precision; width and height
+/// multiples of 8.
+struct NaiveBands {
+  explicit NaiveBands(const ImageView& rgb);
+
+  std::array<std::vector<double>, 2> bands;  ///< fine, coarse
+};
 
 }  // namespace visavis

@@ -16,6 +16,7 @@ constexpr float kGrazing = 0.22f;  ///< cosine below which a vertex lies at the 
 constexpr float kPatternFacing = 0.2f;
 constexpr float kFar = 1e9f;  ///< [m]
 constexpr ScoreRings kSurface{1, {0, 0}}, kRound{2, {0.010f, 0.022f}};
+constexpr double kOneEyeMargin = 0.3;
 constexpr double kNccWeight = 1.5;
 constexpr float kLargestPattern = 127;
 constexpr int kHairShift = 0, kSkinShift = 8, kHeadShift = 16;
@@ -164,6 +165,15 @@ MeshScore MeshFitness::Evaluate(const StereoView& view, const RigidTransform& X_
   AddInside(view, poses, &score);
   AddOutside(view, poses, &score);
   return score;
+}
+
+double MeshFitness::TotalIfWorth(const StereoView& view, const RigidTransform& X_CM,
+                                 double worth) const {
+  StereoView one = view;
+  one[1].scores = nullptr;
+  const MeshScore right = Evaluate(one, X_CM);
+  if (right.has_ncc && right.total() < worth - kOneEyeMargin) return right.total();
+  return Evaluate(view, X_CM).total();
 }
 
 }  // namespace visavis

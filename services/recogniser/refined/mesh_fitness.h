@@ -32,6 +32,10 @@ class MeshFitness {
   /// every SIMD target. No allocation.
   MeshScore Evaluate(const StereoView& view, const RigidTransform& X_CM) const;
 
+  /// The same as total(), for many poses of which few are wanted: what the right eye shows decides
+  /// alone where that is less than @p worth by 0.3.
+  double TotalIfWorth(const StereoView& view, const RigidTransform& X_CM, double worth) const;
+
   /// A glance at a few places of the face: mean skin score in units of 2 nats. Poses that fail it
   /// need no evaluation. 1 on grey pictures.
   double GlanceAtSkin(const StereoView& view, const RigidTransform& X_CM) const;

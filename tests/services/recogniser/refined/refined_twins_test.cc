@@ -7,6 +7,7 @@
 
 #include "services/recogniser/fitness_kernel.h"
 #include "tests/support/mesh_scene.h"
+#include "tests/support/naive_bands.h"
 #include "tests/support/naive_refined.h"
 #include "tests/support/simd_targets.h"
 #include "tests/support/stereo_scene.h"
@@ -45,6 +46,18 @@ TEST_F(RefinedTwinsTest, TheFitnessEqualsItsTwin) {
       EXPECT_NEAR(a.inside, b.inside, 0.01);
       EXPECT_NEAR(a.outside, b.outside, 0.02);
       EXPECT_NEAR(a.ncc, b.ncc, 0.01);
+    }
+  }
+}
+
+TEST_F(RefinedTwinsTest, TheBandsEqualTheirTwins) {
+  const NaiveBands naive(scene_.picture(0));
+  for (const Band band : {kFineBand, kCoarseBand}) {
+    const BandView view = view_[0].bands->view(band);
+    ASSERT_EQ(naive.bands[band].size(), static_cast<std::size_t>(view.width * view.height));
+    for (std::size_t i = 0; i < naive.bands[band].size(); ++i) {
+      const auto value = static_cast<std::int16_t>(view.pairs[i] & 0xffff);
+      ASSERT_NEAR(static_cast<double>(value) / kBandSteps, naive.bands[band][i], 0.1) << i;
     }
   }
 }
