@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
+#include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
-#include "tests/support/log_player.h"
 
 namespace visavis {
 namespace {
