@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/core/check.h"
+#include "services/recogniser/refined/picture_kernel.h"
 
 namespace visavis {
 
@@ -12,41 +13,35 @@ BandImages::BandImages(int width, int height) {
     return static_cast<std::size_t>(width / divisor + 1) *
            static_cast<std::size_t>(height / divisor + 1);
   };
-  for (Plane* plane : {&half_, &smooth_half_, &scratch_, &bands_[kFineBand]}) {
-    plane->data.resize(cells(2));
-  }
-  for (Plane* plane : {&quarter_, &smooth_quarter_, &wide_, &wider_, &bands_[kCoarseBand]}) {
-    plane->data.resize(cells(4));
-  }
+  for (Plane* plane : {&half_, &smooth_half_, &scratch_}) plane->data.resize(cells(2));
+  for (Plane* plane : {&quarter_, &smooth_quarter_, &wide_, &wider_}) plane->data.resize(cells(4));
   eighth_.data.resize(cells(8));
-}
-
-void BandImages::Resize(Plane* plane, int width, int height) const {
-  plane->width = width;
-  plane->height = height;
+  bands_[kFineBand].data.resize(cells(2));
+  bands_[kCoarseBand].data.resize(cells(4));
+  row_.resize(static_cast<std::size_t>(width + 1));
+  blended_.resize(static_cast<std::size_t>(width / 4 + 3));
 }
 
 void BandImages::HalfBrightness(const ImageView& image, const PixelBox& box) {
-  Resize(&half_, box.width() / 2, box.height() / 2);
-  const bool gray = image.format == PixelFormat::kGray;
-  const int red = image.format == PixelFormat::kBgr ? 2 : 0, blue = 2 - red;
+  half_.width = box.width() / 2;
+  half_.height = box.height() / 2;
+  const bool gray = image.format == PixelFormat::kGray, bgr = image.format == PixelFormat::kBgr;
   const std::ptrdiff_t left = std::ptrdiff_t{box.x0} * (gray ? 1 : 3);  // [bytes] into a row
   for (int y = 0; y < half_.height; ++y) {
     const std::uint8_t* top = image.row(box.y0 + 2 * y) + left;
     const std::uint8_t* bottom = image.row(box.y0 + 2 * y + 1) + left;
-    float* out = half_.row(y);
+    std::uint16_t* out = half_.row(y);
     if (gray) {
       for (int x = 0; x < half_.width; ++x, top += 2, bottom += 2) {
-        const int sum = top[0] + top[1] + bottom[0] + bottom[1];
-        out[x] = 0.25f * static_cast<float>(sum);
+        out[x] = static_cast<std::uint16_t>((top[0] + top[1] + bottom[0] + bottom[1]) *
+                                            (kBandSteps / 4));
       }
       continue;
     }
-    for (int x = 0; x < half_.width; ++x, top += 6, bottom += 6) {
-      const int r = top[red] + top[red + 3] + bottom[red] + bottom[red + 3];
-      const int g = top[1] + top[4] + bottom[1] + bottom[4];
-      const int bl = top[blue] + top[blue + 3] + bottom[blue] + bottom[blue + 3];
-      out[x] = (1.0f / 1024) * static_cast<float>(77 * r + 150 * g + 29 * bl);
+    std::uint16_t* means = row_.data();  // 256 a level
+    MeanBrightness(top, bottom, box.width(), bgr, means);
+    for (int x = 0; x < half_.width; ++x) {
+      out[x] = static_cast<std::uint16_t>((means[2 * x] + means[2 * x + 1] + 4) >> 3);
     }
   }
 }
@@ -55,31 +50,36 @@ void BandImages::Halve(const Plane& from, Plane* to) {
   to->width = from.width / 2;
   to->height = from.height / 2;
   for (int y = 0; y < to->height; ++y) {
-    const float *a = from.row(2 * y), *b = from.row(2 * y + 1);
-    float* out = to->row(y);
-    for (int x = 0; x < to->width; ++x, a += 2, b += 2) {
-      out[x] = 0.25f * (a[0] + a[1] + b[0] + b[1]);
+    const std::uint16_t *a = from.row(2 * y), *b = from.row(2 * y + 1);
+    std::uint16_t* out = to->row(y);
+    for (int x = 0; x < to->width; ++x) {
+      out[x] =
+          static_cast<std::uint16_t>((a[2 * x] + a[2 * x + 1] + b[2 * x] + b[2 * x + 1] + 2) >> 2);
     }
   }
 }
 
-// 1 2 1 in both directions; the border repeats.
+// 1 2 1 in both directions; the border repeats. 4 * 255 levels and the rounding fit into 16 bits.
 void BandImages::Smooth3(const Plane& from, Plane* to) {
-  Resize(to, from.width, from.height);
-  Resize(&scratch_, from.width, from.height);
+  to->width = scratch_.width = from.width;
+  to->height = scratch_.height = from.height;
   const int w = from.width, h = from.height;
+  const auto smooth = [](std::uint16_t a, std::uint16_t b, std::uint16_t c) {
+    const auto sum = static_cast<std::uint16_t>(a + b + b + c + 2);
+    return static_cast<std::uint16_t>(sum >> 2);
+  };
   for (int y = 0; y < h; ++y) {
-    const float* in = from.row(y);
-    float* out = scratch_.row(y);
-    out[0] = 0.25f * (3 * in[0] + in[1]);
-    for (int x = 1; x < w - 1; ++x) out[x] = 0.25f * (in[x - 1] + 2 * in[x] + in[x + 1]);
-    out[w - 1] = 0.25f * (3 * in[w - 1] + in[w - 2]);
+    const std::uint16_t* in = from.row(y);
+    std::uint16_t* out = scratch_.row(y);
+    out[0] = smooth(in[0], in[0], in[1]);
+    for (int x = 1; x < w - 1; ++x) out[x] = smooth(in[x - 1], in[x], in[x + 1]);
+    out[w - 1] = smooth(in[w - 2], in[w - 1], in[w - 1]);
   }
   for (int y = 0; y < h; ++y) {
-    const float *a = scratch_.row(std::max(y - 1, 0)), *b = scratch_.row(y),
-                *c = scratch_.row(std::min(y + 1, h - 1));
-    float* out = to->row(y);
-    for (int x = 0; x < w; ++x) out[x] = 0.25f * (a[x] + 2 * b[x] + c[x]);
+    const std::uint16_t *a = scratch_.row(std::max(y - 1, 0)), *b = scratch_.row(y),
+                        *c = scratch_.row(std::min(y + 1, h - 1));
+    std::uint16_t* out = to->row(y);
+    for (int x = 0; x < w; ++x) out[x] = smooth(a[x], b[x], c[x]);
   }
 }
 
@@ -90,22 +90,32 @@ void BandImages::Smooth5(const Plane& from, Plane* to) {
 }
 
 // @p from minus @p coarse at twice its resolution (bilinear).
-void BandImages::SubtractDoubled(const Plane& from, const Plane& coarse, Plane* to) {
+void BandImages::SubtractDoubled(const Plane& from, const Plane& coarse, PairPlane* to) {
   to->width = from.width;
   to->height = from.height;
+  const int w = coarse.width;
+  const auto blend = [](std::uint16_t near, std::uint16_t far) {
+    const auto sum = static_cast<std::uint16_t>(near + near + near + far + 2);
+    return static_cast<std::uint16_t>(sum >> 2);
+  };
+  std::uint16_t* blended = blended_.data() + 1;  // the border repeats on both sides
+  std::uint16_t* row = row_.data();              // signed, modulo 2^16
   for (int y = 0; y < from.height; ++y) {
     const int near_y = std::min(y / 2, coarse.height - 1);
     const int far_y = std::clamp(y % 2 == 0 ? near_y - 1 : near_y + 1, 0, coarse.height - 1);
-    const float *n = coarse.row(near_y), *f = coarse.row(far_y), *in = from.row(y);
-    float* out = to->row(y);
-    const auto blend = [&](int x) { return 0.75f * n[x] + 0.25f * f[x]; };
-    float before = blend(0), here = before;
-    for (int x = 0; x < coarse.width; ++x, in += 2, out += 2) {
-      const float after = blend(std::min(x + 1, coarse.width - 1));
-      out[0] = in[0] - (0.75f * here + 0.25f * before);
-      out[1] = in[1] - (0.75f * here + 0.25f * after);
-      before = here;
-      here = after;
+    const std::uint16_t *n = coarse.row(near_y), *f = coarse.row(far_y), *in = from.row(y);
+    for (int x = 0; x < w; ++x) blended[x] = blend(n[x], f[x]);
+    blended[-1] = blended[0];
+    blended[w] = blended[w - 1];
+    for (int x = 0; x < w; ++x) {
+      row[2 * x] = static_cast<std::uint16_t>(in[2 * x] - blend(blended[x], blended[x - 1]));
+      row[2 * x + 1] =
+          static_cast<std::uint16_t>(in[2 * x + 1] - blend(blended[x], blended[x + 1]));
+    }
+    row[2 * w] = row[2 * w - 1];
+    std::int32_t* out = to->row(y);
+    for (int x = 0; x < 2 * w; ++x) {
+      out[x] = static_cast<std::int32_t>(std::uint32_t{row[x + 1]} << 16 | row[x]);
     }
   }
 }
@@ -127,28 +137,14 @@ void BandImages::Build(const ImageView& image, const PixelBox& box) {
   SubtractDoubled(smooth_quarter_, wider_, &bands_[kCoarseBand]);
 }
 
-bool BandImages::At(Band band, float u, float v, Sample* sample) const {
-  const Plane& plane = bands_[band];
-  const float scale = band == kFineBand ? 0.5f : 0.25f;
-  const float x = (u + 0.5f - static_cast<float>(box_.x0)) * scale - 0.5f;
-  const float y = (v + 0.5f - static_cast<float>(box_.y0)) * scale - 0.5f;
-  if (!(x >= 2 && y >= 2 && x < static_cast<float>(plane.width - 3) &&
-        y < static_cast<float>(plane.height - 3))) {
-    return false;
-  }
-  const int i = static_cast<int>(x), j = static_cast<int>(y);
-  const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const std::ptrdiff_t w = plane.width;
-  const float* p = plane.row(j) + i;
-  // Columns and rows of the 4 x 4 neighbourhood, each interpolated across.
-  const auto row = [&](const float* q) { return q[0] + a * (q[1] - q[0]); };
-  const float r0 = row(p - w), r1 = row(p), r2 = row(p + w), r3 = row(p + 2 * w);
-  const auto column = [&](int k) { return p[k] + b * (p[k + w] - p[k]); };
-  const float c0 = column(-1), c1 = column(0), c2 = column(1), c3 = column(2);
-  sample->value = r1 + b * (r2 - r1);
-  sample->du = 0.5f * scale * ((c2 - c0) + a * ((c3 - c1) - (c2 - c0)));
-  sample->dv = 0.5f * scale * ((r2 - r0) + b * ((r3 - r1) - (r2 - r0)));
-  return true;
+BandView BandImages::view(Band band) const {
+  const PairPlane& plane = bands_[band];
+  return {plane.data.data(),
+          plane.width,
+          plane.height,
+          static_cast<float>(box_.x0),
+          static_cast<float>(box_.y0),
+          band == kFineBand ? 0.5f : 0.25f};
 }
 
 }  // namespace visavis

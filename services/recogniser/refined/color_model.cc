@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/recogniser/refined/picture_kernel.h"
+
 namespace visavis {
 namespace {
 
@@ -13,18 +15,20 @@ constexpr float kLeastRate = 0.06f;         ///< of new observations against the
 constexpr float kPriorShare = 0.1f;
 constexpr float kEnough = 20;  ///< counts that a class learns from
 
-/// Each bin shares with its neighbours along the three axes.
+/// Each bin shares with its neighbours along the three axes; the borders repeat.
 void Blur(float* bins, float centre) {
   std::array<float, ColorModel::kBins> old;
   const float side = 0.5f * (1 - centre);
   for (const int step : {1, 16, 256}) {
     std::copy(bins, bins + ColorModel::kBins, old.begin());
-    for (int i = 0; i < ColorModel::kBins; ++i) {
-      const int level = i / step % 16;
-      const auto at = static_cast<std::size_t>(i), s = static_cast<std::size_t>(step);
-      const float below = level > 0 ? old[at - s] : old[at];
-      const float above = level < 15 ? old[at + s] : old[at];
-      bins[i] = centre * old[at] + side * (below + above);
+    for (int block = 0; block < ColorModel::kBins; block += 16 * step) {
+      for (int level = 0; level < 16; ++level) {
+        const float* here = old.data() + block + level * step;
+        const float* below = level > 0 ? here - step : here;
+        const float* above = level < 15 ? here + step : here;
+        float* out = bins + block + level * step;
+        for (int i = 0; i < step; ++i) out[i] = centre * here[i] + side * (below[i] + above[i]);
+      }
     }
   }
 }
@@ -111,20 +115,16 @@ void ColorModel::Learn(Counts* counts) {
 }
 
 void ColorModel::MakeTable() {
-  const auto byte = [](float ratio) {
-    const float score = kScorePerNat * std::log(ratio);
-    return static_cast<std::uint32_t>(
-        std::lround(std::clamp(score + static_cast<float>(kScoreZero), 1.0f, 255.0f)));
+  std::array<float, kBins> skin, hair, surroundings;
+  const auto mix = [&](ColorClass c, std::array<float, kBins>* mixed) {
+    const float *share = shares_[c].data(), *prior = prior_[c].data();
+    for (std::size_t i = 0; i < kBins; ++i)
+      (*mixed)[i] = (1 - kPriorShare) * share[i] + kPriorShare * prior[i] + kFloor;
   };
-  for (std::size_t i = 0; i < kBins; ++i) {
-    const auto mixed = [&](ColorClass c) {
-      return (1 - kPriorShare) * shares_[c][i] + kPriorShare * prior_[c][i] + kFloor;
-    };
-    const float skin = mixed(kSkinColor), hair = mixed(kHairColor);
-    const float around = 1 / (shares_[kSurroundings][i] + kFloor);
-    table_[i] = byte(hair * around) | byte(skin * around) << 8 |
-                byte(0.5f * (hair + skin) * around) << 16 | 0xff000000u;
-  }
+  mix(kSkinColor, &skin);
+  mix(kHairColor, &hair);
+  for (std::size_t i = 0; i < kBins; ++i) surroundings[i] = shares_[kSurroundings][i] + kFloor;
+  MakeScores({skin.data(), hair.data(), surroundings.data()}, kBins, table_.data());
 }
 
 }  // namespace visavis

@@ -5,6 +5,7 @@
 
 #include "services/recogniser/refined/head_mesh.h"
 #include "services/recogniser/refined/pose_equations.h"
+#include "services/recogniser/refined/score_kernel.h"
 #include "services/recogniser/refined/stereo_view.h"
 
 namespace visavis {
@@ -27,7 +28,7 @@ struct OutlineMeasurement {
 
 /// Silhouette and hairline against the colours along their normals: at each point of the model's
 /// contour the place where inside turns to outside is found as a posterior over the pixels along
-/// the normal (log-likelihood ratios summed up), with its mean and variance.
+/// the normal (log-likelihood ratios summed up), with its mean and variance. No allocation.
 class ContourTerm {
  public:
   ContourTerm(const HeadMesh& mesh, const Hairline& hairline);
@@ -36,29 +37,37 @@ class ContourTerm {
   void Add(const EyeView& eye, const EyePose& pose, int reach_px, float outline_weight,
            float hairline_weight, PoseEquations* equations, ContourFit* fit);
 
-  /// The outline's measurements of the last Add().
-  const std::vector<OutlineMeasurement>& outline() const { return outline_; }
+  /// What @p eye measures of the outline alone; valid until the next call.
+  const std::vector<OutlineMeasurement>& MeasureOutline(const EyeView& eye, const EyePose& pose,
+                                                        int reach_px);
 
  private:
+  /// Where the silhouette passes a mesh edge.
   struct Candidate {
-    Eigen::Vector3f p_M, n_M;
-    HeadPart part;
-    float weight, distance;  // distance < 0: none
+    Eigen::Vector3f p_M;
+    float distance;  // < 0: none
+    float t;         // how far from vertex a to b
+    std::int32_t a, b;
   };
   static constexpr int kDirections = 96;
-  static constexpr int kMaxReach = 16;
-  enum class Edge { kHair, kSkin, kHairline };
 
-  void FindSilhouette(const EyePose& pose);
-  void Measure(const EyeView& eye, const EyePose& pose, const Eigen::Vector3f& p_M,
-               const Eigen::Vector3f& n_M, Edge edge, int reach, float weight,
-               PoseEquations* equations, ContourFit* fit);
-  std::vector<OutlineMeasurement> outline_;
+  void FindSilhouette(const KernelEye& eye, const EyePose& pose);
+  void ReadEnds();
+  void KeepOutermost();
+  void Measure(const EyeView& eye, const KernelEye& kernel_eye, int reach, PoseEquations* equations,
+               ContourFit* fit);
 
   HeadMesh mesh_;
   Hairline hairline_;
-  std::vector<float> n_dot_p_, facing_;
+  OutlineVertices vertices_;
+  std::vector<std::int32_t> first_edge_, edge_ends_;  // edges by their lower vertex
+  std::vector<float> facing_, likelihoods_;
+  std::vector<std::int32_t> near_;
   std::vector<Candidate> silhouette_;
+  std::vector<OutlineMeasurement> outline_;
+  Crossings crossings_;
+  ContourPoints points_;
+  EquationRows rows_;
 };
 
 }  // namespace visavis

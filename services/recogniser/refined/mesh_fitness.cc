@@ -4,24 +4,42 @@
 #include <cmath>
 #include <utility>
 
+#include "common/core/check.h"
+
 namespace visavis {
 namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kScoreLimit = 50;
 constexpr double kScoreUnit = 40;  ///< 2 nats
 constexpr float kGrazing = 0.22f;  ///< cosine below which a vertex lies at the outline
+constexpr float kPatternFacing = 0.2f;
+constexpr float kFar = 1e9f;  ///< [m]
+constexpr ScoreRings kSurface{1, {0, 0}}, kRound{2, {0.010f, 0.022f}};
+constexpr double kOneEyeMargin = 0.3;
 constexpr double kNccWeight = 1.5;
-constexpr int kFewestPattern = 20;
+constexpr float kLargestPattern = 127;
+constexpr int kHairShift = 0, kSkinShift = 8, kHeadShift = 16;
 
-struct PixelOf {
-  float u, v;
-};
+double Mean(const ScoreSum& s) { return s.sum / (kScoreUnit * std::max(s.count, 1)); }
 
-PixelOf Project(const EyeGeometry& g, const Vector3f& p) {
-  const float iz = 1 / std::max(p.z(), 0.05f);
-  return {g.cx + g.fx * p.x() * iz, g.cy + g.fy * p.y() * iz};
+/// Indices in an order that keeps neighbours together, so that blocks of points turn away together.
+void SortByDirection(const std::vector<Vector3f>& normals, std::vector<std::size_t>::iterator begin,
+                     std::vector<std::size_t>::iterator end) {
+  if (end - begin <= kLanes) return;
+  Vector3f low = normals[*begin], high = low;
+  for (auto it = begin; it != end; ++it) {
+    low = low.cwiseMin(normals[*it]);
+    high = high.cwiseMax(normals[*it]);
+  }
+  Eigen::Index axis;
+  (high - low).maxCoeff(&axis);
+  const auto middle = begin + PaddedSize(static_cast<int>(end - begin) / 2);
+  std::nth_element(begin, middle, end, [&](std::size_t a, std::size_t b) {
+    return std::pair(normals[a][axis], a) < std::pair(normals[b][axis], b);
+  });
+  SortByDirection(normals, begin, middle);
+  SortByDirection(normals, middle, end);
 }
 
 }  // namespace
@@ -31,24 +49,25 @@ double MeshScore::total() const {
          (has_ncc ? kNccWeight * ncc : 0);
 }
 
-MeshFitness::Point MeshFitness::MakePoint(const Vector3f& p, const Vector3f& n) {
-  return {p, n, n.dot(p), 0, false};
-}
-
 MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detail) {
   const auto step = static_cast<std::size_t>(detail);
-  std::size_t inside = 0, outline = 0, pattern = 0;
+  std::vector<std::size_t> inside, outline;
+  std::size_t num_inside = 0, num_outline = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    Point point = MakePoint(mesh.vertices[i], mesh.normals[i]);
-    point.hair = mesh.parts[i] == HeadPart::kHair;
-    if (mesh.coloured[i] && inside++ % (2 * step) == 0) inside_.push_back(point);
-    if (mesh.contour_weights[i] > 0 && outline++ % step == 0) outline_.push_back(point);
+    if (mesh.coloured[i] && num_inside++ % (2 * step) == 0) inside.push_back(i);
+    if (mesh.contour_weights[i] > 0 && num_outline++ % step == 0) outline.push_back(i);
   }
-  for (std::size_t i = 0; i < face.size(); ++i) {
-    if (!face.has_generic[i] || pattern++ % (2 * step) != 0) continue;
-    pattern_.push_back(MakePoint(face.points[i], face.normals[i]));
-    pattern_.back().value = face.generic[kCoarseBand][i];
+  SortByDirection(mesh.normals, inside.begin(), inside.end());
+  SortByDirection(mesh.normals, outline.begin(), outline.end());
+  for (const std::size_t i : inside) {
+    inside_.Add(mesh.vertices[i], mesh.normals[i], mesh.normals[i].dot(mesh.vertices[i]),
+                mesh.parts[i] == HeadPart::kHair ? kHairShift : kSkinShift);
   }
+  for (const std::size_t i : outline) {
+    outside_.Add(mesh.vertices[i], mesh.normals[i], mesh.normals[i].dot(mesh.vertices[i]),
+                 kHeadShift);
+  }
+  AddPattern(face, 2 * step);
   // Forehead, cheeks, nose, upper lip, chin.
   for (const auto& [x, y] : {std::pair{-0.02f, -0.019f},
                              {0.02f, -0.019f},
@@ -60,95 +79,101 @@ MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detai
                              {0.03f, 0.073f},
                              {0.0f, 0.096f}}) {
     const Vector3f wanted(x, y, -0.085f);
-    skin_.push_back(std::min_element(
+    const Vector3f& nearest = *std::min_element(
         mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector3f& a, const Vector3f& b) {
           return (a - wanted).squaredNorm() < (b - wanted).squaredNorm();
-        })[0]);
+        });
+    skin_.Add(nearest, Vector3f::Zero(), -1, kSkinShift);  // counts whatever the pose
   }
+  for (ScorePoints* points : {&inside_, &outside_, &skin_}) points->Pad();
+}
+
+void MeshFitness::AddPattern(const FacePoints& face, std::size_t step) {
+  const std::vector<float>& generic = face.generic[kCoarseBand];
+  float largest = 1e-6f;
+  for (const float value : generic) largest = std::max(largest, std::abs(value));
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < face.size(); ++i) {
+    if (!face.has_generic[i] || count++ % step != 0) continue;
+    pattern_.Add(face.points[i], face.normals[i], face.normals[i].dot(face.points[i]),
+                 static_cast<int>(std::lround(kLargestPattern / largest * generic[i])));
+  }
+  VISAVIS_THROW_UNLESS(pattern_.size() <= kMostPatternPoints, pattern_.size());
+  pattern_.Pad();
+}
+
+MeshFitness::Poses MeshFitness::PosesOf(const StereoView& view, const RigidTransform& X_CM) {
+  const auto pose = [&](const EyeView& eye) {
+    return KernelEye(*eye.geometry, EyePose(*eye.geometry, X_CM));
+  };
+  return {pose(view[0]), pose(view[1])};
 }
 
 double MeshFitness::GlanceAtSkin(const StereoView& view, const RigidTransform& X_CM) const {
-  int sum = 0, count = 0;
-  for (const EyeView& eye : view) {
-    if (!eye.seen() || !eye.scores->has_color()) continue;
-    const EyePose pose(*eye.geometry, X_CM);
-    for (const Vector3f& p : skin_) {
-      const PixelOf at = Project(*eye.geometry, pose.InEye(p));
-      sum += std::clamp(SkinScore(eye.scores->At(at.u, at.v)), -kScoreLimit, kScoreLimit);
-      ++count;
-    }
+  ScoreSum both;
+  const Poses poses = PosesOf(view, X_CM);
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen() || !view[e].scores->has_color()) continue;
+    const ScoreSum one = SumScores(poses[e], view[e].scores->view(), skin_, kSurface, -kFar);
+    both.sum += one.sum;
+    both.count += one.count;
   }
-  return count > 0 ? sum / (kScoreUnit * count) : 1;
+  return both.count > 0 ? Mean(both) : 1;
+}
+
+void MeshFitness::AddCorrelation(const StereoView& view, const Poses& poses,
+                                 MeshScore* score) const {
+  int eyes = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen()) continue;
+    const PatternSums sums = SumPattern(poses[e], view[e].bands->view(kCoarseBand), pattern_,
+                                        -kPatternFacing * poses[e].distance);
+    score->ncc += sums.correlation();
+    ++eyes;
+  }
+  score->has_ncc = eyes > 0;
+  score->ncc /= std::max(eyes, 1);
+}
+
+void MeshFitness::AddInside(const StereoView& view, const Poses& poses, MeshScore* score) const {
+  int eyes = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen() || !view[e].scores->has_color()) continue;
+    score->inside += Mean(SumScores(poses[e], view[e].scores->view(), inside_, kSurface, -kFar));
+    ++eyes;
+  }
+  score->has_color = eyes > 0;
+  score->inside /= std::max(eyes, 1);
+}
+
+void MeshFitness::AddOutside(const StereoView& view, const Poses& poses, MeshScore* score) const {
+  int eyes = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen() || !view[e].scores->has_color()) continue;
+    const ScoreSum sum = SumScores(poses[e], view[e].scores->view(), outside_, kRound,
+                                   -kGrazing * poses[e].distance);
+    score->outside += Mean(sum);
+    ++eyes;
+  }
+  score->outside /= std::max(eyes, 1);
 }
 
 MeshScore MeshFitness::Evaluate(const StereoView& view, const RigidTransform& X_CM) const {
   MeshScore score;
-  int color_eyes = 0, ncc_eyes = 0;
-  for (const EyeView& eye : view) {
-    if (!eye.seen()) continue;
-    const EyePose pose(*eye.geometry, X_CM);
-    score.ncc += Correlation(eye, pose);
-    ++ncc_eyes;
-    if (!eye.scores->has_color()) continue;
-    score.inside += Inside(eye, pose);
-    score.outside += Outside(eye, pose);
-    ++color_eyes;
-  }
-  score.has_color = color_eyes > 0;
-  score.has_ncc = ncc_eyes > 0;
-  score.inside /= std::max(color_eyes, 1);
-  score.outside /= std::max(color_eyes, 1);
-  score.ncc /= std::max(ncc_eyes, 1);
+  const Poses poses = PosesOf(view, X_CM);
+  AddCorrelation(view, poses, &score);
+  AddInside(view, poses, &score);
+  AddOutside(view, poses, &score);
   return score;
 }
 
-double MeshFitness::Inside(const EyeView& eye, const EyePose& pose) const {
-  int count = 0, sum = 0;
-  for (const Point& point : inside_) {
-    if (point.n_dot_p >= point.n.dot(pose.p_ME)) continue;  // turned away
-    const PixelOf at = Project(*eye.geometry, pose.InEye(point.p));
-    const PackedScores s = eye.scores->At(at.u, at.v);
-    sum += std::clamp(point.hair ? HairScore(s) : SkinScore(s), -kScoreLimit, kScoreLimit);
-    ++count;
-  }
-  return static_cast<double>(sum) / (kScoreUnit * std::max(count, 1));
-}
-
-double MeshFitness::Outside(const EyeView& eye, const EyePose& pose) const {
-  int count = 0, sum = 0;
-  const float grazing = -kGrazing * pose.p_ME.norm();
-  for (const Point& point : outline_) {
-    const float away = point.n_dot_p - point.n.dot(pose.p_ME);  // < 0: turned to the eye
-    if (away >= 0 || away <= grazing) continue;
-    for (const float beyond : {0.010f, 0.022f}) {
-      const PixelOf at = Project(*eye.geometry, pose.InEye(point.p + beyond * point.n));
-      sum += std::clamp(HeadScore(eye.scores->At(at.u, at.v)), -kScoreLimit, kScoreLimit);
-      ++count;
-    }
-  }
-  return static_cast<double>(sum) / (kScoreUnit * std::max(count, 1));
-}
-
-double MeshFitness::Correlation(const EyeView& eye, const EyePose& pose) const {
-  int n = 0;
-  float x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-  const float turned = -0.2f * pose.p_ME.norm();
-  for (const Point& point : pattern_) {
-    if (point.n_dot_p - point.n.dot(pose.p_ME) > turned) continue;
-    const PixelOf at = Project(*eye.geometry, pose.InEye(point.p));
-    float value;
-    if (!eye.bands->Nearest(kCoarseBand, at.u, at.v, &value)) continue;
-    x += point.value;
-    y += value;
-    xx += point.value * point.value;
-    xy += point.value * value;
-    yy += value * value;
-    ++n;
-  }
-  if (n < kFewestPattern) return 0;
-  const float in = 1 / static_cast<float>(n);
-  const float cov = xy - x * y * in, vx = xx - x * x * in, vy = yy - y * y * in;
-  return static_cast<double>(cov / std::sqrt(std::max(vx * vy, 0.0f) + 1e-6f));
+double MeshFitness::TotalIfWorth(const StereoView& view, const RigidTransform& X_CM,
+                                 double worth) const {
+  StereoView one = view;
+  one[1].scores = nullptr;
+  const MeshScore right = Evaluate(one, X_CM);
+  if (right.has_ncc && right.total() < worth - kOneEyeMargin) return right.total();
+  return Evaluate(view, X_CM).total();
 }
 
 }  // namespace visavis

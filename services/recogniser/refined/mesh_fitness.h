@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "services/recogniser/refined/face_kernel.h"
 #include "services/recogniser/refined/face_points.h"
 #include "services/recogniser/refined/head_mesh.h"
+#include "services/recogniser/refined/score_kernel.h"
 #include "services/recogniser/refined/stereo_view.h"
 
 namespace visavis {
@@ -25,27 +28,29 @@ class MeshFitness {
   /// @p detail: what share of the mesh's and the face's points is looked at, one in so many.
   MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detail);
 
-  /// The face's pattern is the generic one's coarse band. No allocation.
+  /// The face's pattern is the generic one's coarse band. All sums are exact integers, equal on
+  /// every SIMD target. No allocation.
   MeshScore Evaluate(const StereoView& view, const RigidTransform& X_CM) const;
+
+  /// The same as total(), for many poses of which few are wanted: what the right eye shows decides
+  /// alone where that is less than @p worth by 0.3.
+  double TotalIfWorth(const StereoView& view, const RigidTransform& X_CM, double worth) const;
 
   /// A glance at a few places of the face: mean skin score in units of 2 nats. Poses that fail it
   /// need no evaluation. 1 on grey pictures.
   double GlanceAtSkin(const StereoView& view, const RigidTransform& X_CM) const;
 
  private:
-  struct Point {
-    Eigen::Vector3f p, n;
-    float n_dot_p;
-    float value;  ///< pattern_: the generic face's brightness
-    bool hair;    ///< inside_
-  };
-  double Inside(const EyeView& eye, const EyePose& pose) const;
-  double Outside(const EyeView& eye, const EyePose& pose) const;
-  double Correlation(const EyeView& eye, const EyePose& pose) const;
-  static Point MakePoint(const Eigen::Vector3f& p, const Eigen::Vector3f& n);
+  using Poses = std::array<KernelEye, 2>;
 
-  std::vector<Point> inside_, outline_, pattern_;
-  std::vector<Eigen::Vector3f> skin_;  // a few points
+  void AddPattern(const FacePoints& face, std::size_t step);
+  static Poses PosesOf(const StereoView& view, const RigidTransform& X_CM);
+  void AddCorrelation(const StereoView& view, const Poses& poses, MeshScore* score) const;
+  void AddInside(const StereoView& view, const Poses& poses, MeshScore* score) const;
+  void AddOutside(const StereoView& view, const Poses& poses, MeshScore* score) const;
+
+  ScorePoints inside_, outside_, skin_;  // skin_: a few points
+  PatternPoints pattern_;
 };
 
 }  // namespace visavis

@@ -9,6 +9,8 @@ namespace {
 constexpr int kHairlinePoints = 33;
 constexpr double kNearNcc = 0.75;  ///< of the texture's fine band: the pose is almost right
 constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
+constexpr double kAtRest_m = 0.0001, kAtRest_rad = 0.0005;  ///< steps so small change nothing
+constexpr int kLastReachFrom = 2;  ///< iterations before look farther along the contours' normals
 constexpr double kMaxStep_m = 0.025, kMaxStep_rad = 0.15;
 constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the pattern's own contrast
 // Cosine below which a face point is not looked at: the bands blur what is behind the head into
@@ -40,11 +42,7 @@ const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
 const std::vector<OutlineMeasurement>& PoseRefiner::Outline(const StereoView& view, std::size_t eye,
                                                             const RigidTransform& X_CM,
                                                             int reach_px) {
-  PoseEquations ignored;
-  ContourFit ignored_too;
-  contours_.Add(view[eye], EyePose(*view[eye].geometry, X_CM), reach_px, 1, 0, &ignored,
-                &ignored_too);
-  return contours_.outline();
+  return contours_.MeasureOutline(view[eye], EyePose(*view[eye].geometry, X_CM), reach_px);
 }
 
 void PoseRefiner::AddContours(const StereoView& view, const std::array<EyePose, 2>& poses,
@@ -124,7 +122,7 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     refined.contour = {};
     const std::array<EyePose, 2> poses = {EyePose(*view[0].geometry, refined.X_CM),
                                           EyePose(*view[1].geometry, refined.X_CM)};
-    const int reach = i == 0 ? reach_px : i == 1 ? std::min(reach_px, 6) : 4;
+    const int reach = i == 0 ? reach_px : i < kLastReachFrom ? std::min(reach_px, 6) : 4;
     const Band band = i < iterations / 2 && !near ? kCoarseBand : kFineBand;
     if (texture != nullptr) {
       const bool both = view[0].seen() && view[1].seen();
@@ -152,6 +150,9 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     refined.X_CM = Moved(refined.X_CM, step);
     refined.last_step_m = way;
     refined.last_step_rad = turn;
+    if (way > kAtRest_m || turn > kAtRest_rad || i < kLastReachFrom) continue;
+    if (band == kFineBand) break;
+    i = std::max(i, iterations / 2 - 1);  // on to the fine band
   }
   return refined;
 }

@@ -52,6 +52,7 @@ class PoseRefiner {
               const FacePoints& face);
 
   /// @param texture   learned, or null: the generic face then.
+  /// @param iterations  at most: a pose that has come to rest is left there.
   /// @param reach_px  of the first step's contours; later ones look nearer.
   Refined Refine(const StereoView& view, const RigidTransform& X_CM, const FaceTexture* texture,
                  int iterations, int reach_px);

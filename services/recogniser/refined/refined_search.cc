@@ -32,8 +32,16 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     ++estimate_.evaluations;
     return head_.coarse_fitness.Evaluate(view_, X).total();
   };
+  // A shot is taken in only where it beats the worst.
+  const auto shot_fitness = [&](const Vector6d& phi) {
+    const RigidTransform X = TransformFromPhi(phi);
+    const double glance = head_.coarse_fitness.GlanceAtSkin(view_, X);
+    if (glance < kLeastGlance) return kHopeless + glance;
+    ++estimate_.evaluations;
+    return head_.coarse_fitness.TotalIfWorth(view_, X, population_.individuals().back().fitness);
+  };
   population_.Evaluate(fitness);
-  population_.Shoot(settings_.refined.search_shots, fitness);
+  population_.Shoot(settings_.refined.search_shots, shot_fitness);
   const int until = estimate_.evaluations + settings_.refined.search_evaluations;
   const int most = estimate_.generations + settings_.refined.search_evaluations / 10;
   while (estimate_.evaluations < until && estimate_.generations < most) {

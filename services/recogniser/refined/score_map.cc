@@ -1,6 +1,7 @@
 #include "services/recogniser/refined/score_map.h"
 
 #include "common/core/check.h"
+#include "services/recogniser/refined/picture_kernel.h"
 
 namespace visavis {
 
@@ -13,14 +14,10 @@ void ScoreMap::Build(const ImageView& image, const ColorModel& model, const Pixe
     box_ = {};
     return;
   }
-  const int red = image.format == PixelFormat::kBgr ? 2 : 0;
-  const PackedScores* table = model.table().data();
+  const bool bgr = image.format == PixelFormat::kBgr;
   for (int y = box.y0; y < box.y1; ++y) {
-    const std::uint8_t* p = image.row(y) + 3 * std::ptrdiff_t{box.x0};
-    PackedScores* out = scores_.data() + static_cast<std::ptrdiff_t>(y) * width_;
-    for (int x = box.x0; x < box.x1; ++x, p += 3) {
-      out[x] = table[ColorModel::BinOf(p[red], p[1], p[2 - red])];
-    }
+    LookUpScores(image.row(y) + 3 * std::ptrdiff_t{box.x0}, box.width(), bgr, model.table().data(),
+                 scores_.data() + Index(box.x0, y));
   }
 }
 

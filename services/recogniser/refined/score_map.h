@@ -6,6 +6,7 @@
 #include "common/image/image.h"
 #include "services/recogniser/refined/color_model.h"
 #include "services/recogniser/refined/eye.h"
+#include "services/recogniser/refined/score_kernel.h"
 
 namespace visavis {
 
@@ -30,6 +31,15 @@ class ScoreMap {
       return kUnknown;
     }
     return scores_[Index(static_cast<int>(x), static_cast<int>(y))];
+  }
+  /// As the kernels take it.
+  ScoreView view() const {
+    return {scores_.data(),
+            width_,
+            static_cast<float>(box_.x0),
+            static_cast<float>(box_.y0),
+            static_cast<float>(box_.x1),
+            static_cast<float>(box_.y1)};
   }
   const PixelBox& box() const { return box_; }
   bool has_color() const { return has_color_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace visavis {
 namespace {
@@ -79,12 +80,18 @@ PixelBox WorkingPair::BoxAround(std::size_t i, const RigidTransform& X_CM, doubl
   const EyeGeometry& eye = eyes_[i];
   const Eigen::Vector3d p = (eye.R_EC * X_CM.translation().cast<float>() + eye.p_EC).cast<double>();
   const PixelBox whole = WholeBox(i);
-  const double nearest = p.z() - radius_m;
-  if (nearest < 0.1) return whole;
-  const double u = eye.cx + eye.fx * p.x() / p.z(), v = eye.cy + eye.fy * p.y() / p.z();
-  const double half_u = eye.fx * radius_m / nearest, half_v = eye.fy * radius_m / nearest;
-  return {Down(u - half_u, whole.x1), Down(v - half_v, whole.y1),
-          Down(u + half_u + kBoxGrid, whole.x1), Down(v + half_v + kBoxGrid, whole.y1)};
+  // Seen along an axis the sphere is a disc, and the rays that touch it bound its picture.
+  const auto bounds = [&](double across, double focal, double centre, int limit) {
+    const double distance = std::hypot(across, p.z());
+    const double middle = std::atan2(across, p.z());
+    const double half = std::asin(std::min(radius_m / distance, 1.0));
+    return std::pair(Down(centre + focal * std::tan(middle - half), limit),
+                     Down(centre + focal * std::tan(middle + half) + kBoxGrid, limit));
+  };
+  if (p.z() - radius_m < 0.1) return whole;
+  const auto [x0, x1] = bounds(p.x(), eye.fx, eye.cx, whole.x1);
+  const auto [y0, y1] = bounds(p.y(), eye.fy, eye.cy, whole.y1);
+  return {x0, y0, x1, y1};
 }
 
 }  // namespace visavis

@@ -6,6 +6,7 @@
 
 #include "common/core/random.h"
 #include "tests/support/mesh_scene.h"
+#include "tests/support/naive_bands.h"
 #include "tests/support/stereo_scene.h"
 
 namespace visavis {
@@ -67,9 +68,9 @@ TEST_F(AppearanceTest, AValueIsTheBandsWhereThePointIsSeen) {
     if (!samples.seen[i]) continue;
     ++seen;
     const Projection at = ProjectLeft(TestRig(), X_CM_, Face().points[i].cast<double>());
-    BandImages::Sample expected{};
-    ASSERT_TRUE(view_[1].bands->At(kFineBand, static_cast<float>(at.uv.x()),
-                                   static_cast<float>(at.uv.y()), &expected));
+    BandSample expected{};
+    ASSERT_TRUE(SampleBand(view_[1].bands->view(kFineBand), static_cast<float>(at.uv.x()),
+                           static_cast<float>(at.uv.y()), &expected));
     EXPECT_NEAR(samples.value[i], expected.value, 0.02f);
   }
   EXPECT_GT(seen, 300);

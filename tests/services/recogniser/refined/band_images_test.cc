@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "tests/support/malloc_counter.h"
+#include "tests/support/naive_bands.h"
 #include "tests/support/stereo_scene.h"
 
 namespace visavis {
@@ -39,8 +40,8 @@ BandImages BandsOf(const ImageView& view, const PixelBox& box = kWhole) {
 }
 
 float ValueAt(const BandImages& bands, Band band, float u, float v) {
-  BandImages::Sample sample{};
-  EXPECT_TRUE(bands.At(band, u, v, &sample)) << u << " " << v;
+  BandSample sample{};
+  EXPECT_TRUE(SampleBand(bands.view(band), u, v, &sample)) << u << " " << v;
   return sample.value;
 }
 
@@ -109,8 +110,8 @@ TEST(BandImagesTest, TheGradientEqualsFiniteDifferences) {
     double error = 0, size = 0;
     for (float v = 45; v < 80; v += 1.7f) {
       for (float u = 45; u < 110; u += 1.3f) {
-        BandImages::Sample s{};
-        ASSERT_TRUE(bands.At(band, u, v, &s));
+        BandSample s{};
+        ASSERT_TRUE(SampleBand(bands.view(band), u, v, &s));
         const auto du = static_cast<double>(
             (ValueAt(bands, band, u + h, v) - ValueAt(bands, band, u - h, v)) / (2 * h));
         const auto dv = static_cast<double>(
@@ -167,7 +168,7 @@ TEST(BandImagesTest, ABoxGivesWhatTheWholePictureGivesAwayFromItsBorder) {
 TEST(BandImagesTest, OutsideOfTheBoxAndNearItsBorderThereIsNothing) {
   Random random(2);
   const BandImages bands = BandsOf(NoiseImage(kWidth, kHeight, &random).view, {32, 24, 128, 104});
-  BandImages::Sample sample{};
+  BandSample sample{};
   float value;
   for (const Band band : kBands) {
     for (const auto& [u, v] : {std::pair(10.f, 60.f),
@@ -178,24 +179,24 @@ TEST(BandImagesTest, OutsideOfTheBoxAndNearItsBorderThereIsNothing) {
                                {126.f, 60.f},
                                {80.f, 26.f},
                                {80.f, 102.f}}) {
-      EXPECT_FALSE(bands.At(band, u, v, &sample)) << u << " " << v;
+      EXPECT_FALSE(SampleBand(bands.view(band), u, v, &sample)) << u << " " << v;
     }
-    EXPECT_FALSE(bands.At(band, NAN, 60, &sample));
-    EXPECT_FALSE(bands.Nearest(band, 31, 60, &value));
-    EXPECT_FALSE(bands.Nearest(band, 128, 60, &value));
-    EXPECT_FALSE(bands.Nearest(band, 60, NAN, &value));
-    EXPECT_TRUE(bands.Nearest(band, 32, 24, &value));
-    EXPECT_TRUE(bands.Nearest(band, 127, 103, &value));
-    EXPECT_TRUE(bands.At(band, 80, 60, &sample));
+    EXPECT_FALSE(SampleBand(bands.view(band), NAN, 60, &sample));
+    EXPECT_FALSE(NearestSample(bands.view(band), 31, 60, &value));
+    EXPECT_FALSE(NearestSample(bands.view(band), 128, 60, &value));
+    EXPECT_FALSE(NearestSample(bands.view(band), 60, NAN, &value));
+    EXPECT_TRUE(NearestSample(bands.view(band), 32, 24, &value));
+    EXPECT_TRUE(NearestSample(bands.view(band), 127, 103, &value));
+    EXPECT_TRUE(SampleBand(bands.view(band), 80, 60, &sample));
   }
 }
 
 TEST(BandImagesTest, BeforeAnyPictureThereIsNothing) {
   const BandImages bands(kWidth, kHeight);
-  BandImages::Sample sample{};
+  BandSample sample{};
   float value;
-  EXPECT_FALSE(bands.At(kFineBand, 80, 60, &sample));
-  EXPECT_FALSE(bands.Nearest(kCoarseBand, 80, 60, &value));
+  EXPECT_FALSE(SampleBand(bands.view(kFineBand), 80, 60, &sample));
+  EXPECT_FALSE(NearestSample(bands.view(kCoarseBand), 80, 60, &value));
 }
 
 TEST(BandImagesTest, NearestIsTheValueAtASample) {
@@ -208,7 +209,8 @@ TEST(BandImagesTest, NearestIsTheValueAtASample) {
       const float expected = ValueAt(bands, band, centre, centre);
       for (const float aside : {-0.45f, 0.0f, 0.45f}) {
         float value;
-        ASSERT_TRUE(bands.Nearest(band, centre + aside * size, centre - aside * size, &value));
+        ASSERT_TRUE(
+            NearestSample(bands.view(band), centre + aside * size, centre - aside * size, &value));
         EXPECT_NEAR(value, expected, 1e-4f);
       }
     }

@@ -206,7 +206,7 @@ TEST(WorkingPairTest, BoxesContainASphereAndStayInThePicture) {
 TEST(WorkingPairTest, ABoxIsNoLargerThanTheSphereNeeds) {
   const WorkingPair pair(TestRig(), 1.0);
   const PixelBox box = pair.BoxAround(0, TransformFromPhi(PhiOf(0, 0, 1000, 0, 0, 0)), 0.1);
-  const double diameter = 2 * 800 * 0.1 / 0.9;
+  const double diameter = 2 * 800 * 0.1 / std::sqrt(1 - 0.1 * 0.1);
   EXPECT_LT(box.width(), diameter + 2 * 16);
   EXPECT_GT(box.width(), diameter);
 }
