@@ -42,7 +42,7 @@ struct EvidenceConfig {
   double keep_ncc{0.1};               ///< generic pattern, while TRACKING
   double keep_stereo_ncc{0.5};        ///< agreement of both eyes, while TRACKING
   int confirm_frames{1};              ///< good frames in a row before TRACKING
-  int strange_frames{3};              ///< so often a face other than the learned one: learn it anew
+  int strange_frames{15};             ///< so often a face other than the learned one: learn it anew
   int one_eye_frames{10};             ///< so long one eye keeps a track: its depth drifts
 };
 
