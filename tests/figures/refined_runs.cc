@@ -1,5 +1,5 @@
 // Runs the refined estimator over logs of one subject, from an unknown pose, and prints a line for
-// each. Usage: refined_runs SEED REFERENCE.lcm LOG.lcm ...
+// each. Usage: refined_runs [--head head.yaml] SEED REFERENCE.lcm LOG.lcm ...
 //
 // The reference log serves for nothing but the head offset: where the truth's head frame lies in
 // the model's is a matter of definition, and constant for a subject. Columns: log; frames with the
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "common/core/clock.h"
+#include "services/recogniser/head_file.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
@@ -36,11 +37,11 @@ struct Frame {
   double ms;
 };
 
-std::vector<Frame> Run(const std::string& log, std::uint64_t seed) {
+std::vector<Frame> Run(const std::string& log, std::uint64_t seed, const HeadGeometry& head) {
   LogPlayer player(log);
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
-  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig());
+  RefinedEstimator estimator(settings, head, player.rig());
   StageTimer timer(&MonotonicSeconds);
   std::vector<Frame> frames;
   std::int64_t start_us = -1;
@@ -122,14 +123,24 @@ void PrintRow(const std::string& log, const std::vector<Frame>& frames,
 }  // namespace visavis
 
 int main(int argc, char* argv[]) {
-  if (argc < 4) {
-    std::fputs("usage: refined_runs SEED REFERENCE.lcm LOG.lcm ...\n", stderr);
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  std::string head_file;
+  if (arguments.size() > 1 && arguments[0] == "--head") {
+    head_file = arguments[1];
+    arguments.erase(arguments.begin(), arguments.begin() + 2);
+  }
+  if (arguments.size() < 3) {
+    std::fputs("usage: refined_runs [--head head.yaml] SEED REFERENCE.lcm LOG.lcm ...\n", stderr);
     return 2;
   }
   try {
-    const auto seed = static_cast<std::uint64_t>(std::max(0, std::atoi(argv[1])));
-    const auto X_MT = visavis::OffsetOf(visavis::Run(argv[2], seed), 0);
-    for (int i = 3; i < argc; ++i) visavis::PrintRow(argv[i], visavis::Run(argv[i], seed), X_MT);
+    using visavis::HeadGeometry;
+    const HeadGeometry head = head_file.empty() ? HeadGeometry{} : visavis::LoadHeadFile(head_file);
+    const auto seed = static_cast<std::uint64_t>(std::max(0, std::atoi(arguments[0].c_str())));
+    const auto X_MT = visavis::OffsetOf(visavis::Run(arguments[1], seed, head), 0);
+    for (std::size_t i = 2; i < arguments.size(); ++i) {
+      visavis::PrintRow(arguments[i], visavis::Run(arguments[i], seed, head), X_MT);
+    }
     return 0;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "refined_runs: %s\n", e.what());

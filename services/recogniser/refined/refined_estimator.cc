@@ -62,6 +62,7 @@ void RefinedEstimator::Reset() {
   X_CM_.reset();
   if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
   estimate_ = Estimate{};
+  rejected_.clear();
   frames_ = 0;
   good_in_a_row_ = bad_in_a_row_ = one_eye_in_a_row_ = 0;
 }
@@ -133,6 +134,7 @@ void RefinedEstimator::Feedforward(const CameraStep& step) {
                : EulerStep(*phi, step.X_WC1.linear(), step.twist_1, step.dt_s);
   };
   population_.Move(move);
+  for (Eigen::Vector3d& p_CM : rejected_) p_CM = step.X_C2C1 * p_CM;
   if (centre_) {
     centre_ = step.X_C2C1 * *centre_;
     if (is_centred_) CentreOn(*centre_);
@@ -337,6 +339,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     // One eye can keep a track for a while, not begin one: its depth is a guess.
     good = BothEyes() && (IsKnownFace(candidate_, FindTextureNcc()) || IsNewFace());
     if (!good) colors_ = colors_before_;
+    good ? rejected_.clear() : RejectPlaces();
   } else {
     strange_in_a_row_ = 0;
   }

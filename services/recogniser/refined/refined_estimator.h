@@ -67,6 +67,8 @@ class RefinedEstimator final : public Estimator {
                        int reach_px);
   Candidate Track();
   Candidate Search();
+  bool WasRejected(const Vector6d& phi) const;
+  void RejectPlaces();
   std::vector<RigidTransform> DistinctPlaces() const;
   void RefineStarts(const std::vector<RigidTransform>& places);
   std::optional<Candidate> KnownAmongCandidates();
@@ -111,6 +113,7 @@ class RefinedEstimator final : public Estimator {
   std::optional<RigidTransform> X_CM_;     ///< of the last frame, carried to this one
   Candidate candidate_;
   std::vector<Candidate> candidates_;
+  std::vector<Eigen::Vector3d> rejected_;  ///< p_CM of places that proved to be no face
   Estimate estimate_;
   std::int64_t frames_{0}, total_generations_{0};
   int good_in_a_row_{0}, bad_in_a_row_{0}, strange_in_a_row_{0}, one_eye_in_a_row_{0};

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kLeastGlance = -0.5;  ///< below: not worth an evaluation
 constexpr double kHopeless = -3;       ///< fitness then
+constexpr double kRejected_m = 0.05, kRejectedDepth_m = 0.15;
+constexpr std::size_t kMostRejected = 12;
+constexpr int kForgiveEvery = 4;  ///< searches in a row
 constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
 constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17;
 constexpr int kFirstIterations = 4;  ///< of each start
@@ -26,6 +29,7 @@ bool AreOnePlace(const RigidTransform& a, const RigidTransform& b) {
 
 RefinedEstimator::Candidate RefinedEstimator::Search() {
   const auto fitness = [&](const Vector6d& phi) {
+    if (WasRejected(phi)) return 2 * kHopeless;
     const RigidTransform X = TransformFromPhi(phi);
     const double glance = head_.coarse_fitness.GlanceAtSkin(view_, X);
     if (glance < kLeastGlance) return kHopeless + glance;
@@ -34,6 +38,7 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
   };
   // A shot is taken in only where it beats the worst.
   const auto shot_fitness = [&](const Vector6d& phi) {
+    if (WasRejected(phi)) return 2 * kHopeless;
     const RigidTransform X = TransformFromPhi(phi);
     const double glance = head_.coarse_fitness.GlanceAtSkin(view_, X);
     if (glance < kLeastGlance) return kHopeless + glance;
@@ -52,6 +57,27 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
   RefineStarts(DistinctPlaces());
   if (const auto known = KnownAmongCandidates()) return *known;
   return Recognise(BestVerified());
+}
+
+bool RefinedEstimator::WasRejected(const Vector6d& phi) const {
+  return std::any_of(rejected_.begin(), rejected_.end(), [&](const Eigen::Vector3d& p_CM) {
+    const Eigen::Vector3d aside = phi.head<3>() - p_CM;
+    return aside.head<2>().norm() < kRejected_m && std::abs(aside.z()) < kRejectedDepth_m;
+  });
+}
+
+// What was looked at closely and is no face is left alone for some frames, so that other places
+// have their turn. It may have been a face seen askew: then it is forgiven.
+void RefinedEstimator::RejectPlaces() {
+  if (bad_in_a_row_ % kForgiveEvery == 0) {
+    rejected_.clear();
+    return;
+  }
+  for (const Candidate& candidate : candidates_) {
+    const Vector6d phi = PhiFromTransform(candidate.refined.X_CM);
+    if (phi.allFinite() && !WasRejected(phi)) rejected_.push_back(phi.head<3>());
+    if (rejected_.size() >= kMostRejected) break;
+  }
 }
 
 std::vector<RigidTransform> RefinedEstimator::DistinctPlaces() const {
