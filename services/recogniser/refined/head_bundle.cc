@@ -62,8 +62,7 @@ void HeadBundle::LearnTexture() {
     Look(view);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye) {
-        texture.Learn(
-            band, model_->prepared.refiner.Sample(view_, eye, view.X_CM, band, texture.points()));
+        texture.Learn(band, model_->prepared.refiner.Sample(view_, eye, view.X_CM, band, texture));
       }
     }
   }

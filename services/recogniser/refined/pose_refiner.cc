@@ -3,11 +3,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "services/recogniser/refined/occlusion.h"
+
 namespace visavis {
 namespace {
 
 constexpr int kHairlinePoints = 33;
-constexpr double kNearNcc = 0.75;  ///< of the texture's fine band: the pose is almost right
+constexpr double kHiddenDoubt = 0.3;  ///< the less is seen, the better it must fit
+constexpr double kNearNcc = 0.75;     ///< of the texture's fine band: the pose is almost right
 constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
 constexpr double kAtRest_m = 0.0001, kAtRest_rad = 0.0005;  ///< steps so small change nothing
 constexpr int kLastReachFrom = 2;  ///< iterations before look farther along the contours' normals
@@ -33,9 +36,10 @@ PoseRefiner::PoseRefiner(const RefinerConfig& config, const HeadSurface& surface
 
 const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
                                        const RigidTransform& X_CM, Band band,
-                                       const FacePoints& points) {
-  SampleFace(points, view[eye], EyePose(*view[eye].geometry, X_CM), band, kMinFacing,
+                                       const FaceTexture& texture) {
+  SampleFace(texture.points(), view[eye], EyePose(*view[eye].geometry, X_CM), band, kMinFacing,
              &samples_[eye]);
+  if (texture.learned()) HideOccluded(texture, band, &samples_[eye]);
   return samples_[eye];
 }
 
@@ -80,10 +84,11 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
   for (std::size_t e = 0; e < 2; ++e) {
     if (!view[e].seen()) continue;
     SampleFace(texture.points(), view[e], poses[e], band, kMinFacing, &samples_[e]);
+    const double hidden = HideOccluded(texture, band, &samples_[e]);
     const GainOffset fit = AddPattern(texture.points(), samples_[e], poses[e].R_CM,
                                       texture.pattern(band), texture.known(), kTextureSigma,
                                       static_cast<float>(config_.texture_weight), equations);
-    refined->texture_ncc += fit.correlation;
+    refined->texture_ncc += fit.correlation - kHiddenDoubt * hidden;
     ++eyes;
   }
   refined->texture_ncc /= std::max(eyes, 1);

@@ -65,9 +65,10 @@ class PoseRefiner {
   const std::vector<OutlineMeasurement>& Outline(const StereoView& view, std::size_t eye,
                                                  const RigidTransform& X_CM, int reach_px);
 
-  /// Samples of the face under @p X_CM, eye by eye, for learning.
+  /// Samples of the points of @p texture under @p X_CM, eye by eye, for learning: without what is
+  /// hidden by something that the texture, once learned, does not show.
   const FaceSamples& Sample(const StereoView& view, std::size_t eye, const RigidTransform& X_CM,
-                            Band band, const FacePoints& points);
+                            Band band, const FaceTexture& texture);
 
  private:
   void AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,

@@ -23,6 +23,9 @@ struct EvidenceConfig {
     a->Visit("lock_gray_stereo_ncc", &lock_gray_stereo_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
     a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
+    a->Visit("vague_ncc", &vague_ncc, InRange(-1.0, 1.0));
+    a->Visit("vague_outside", &vague_outside, InRange(-2.0, 2.0));
+    a->Visit("vague_inside", &vague_inside, InRange(-2.0, 2.0));
     a->Visit("enrolled_texture_ncc", &enrolled_texture_ncc, InRange(-1.0, 1.0));
     a->Visit("keep_texture_ncc", &keep_texture_ncc, InRange(-1.0, 1.0));
     a->Visit("keep_ncc", &keep_ncc, InRange(-1.0, 1.0));
@@ -37,13 +40,17 @@ struct EvidenceConfig {
   double lock_gray_stereo_ncc{0.96};  ///< the same where the pictures are grey
   double lock_outside{-0.5};          ///< at most: how much the surroundings look like a head
   double lock_inside{0.4};            ///< at least: how much the inside does
-  double enrolled_texture_ncc{0.7};   ///< an enrolled face, to be found
-  double keep_texture_ncc{0.6};       ///< learned texture, while TRACKING
-  double keep_ncc{0.1};               ///< generic pattern, while TRACKING
-  double keep_stereo_ncc{0.5};        ///< agreement of both eyes, while TRACKING
-  int confirm_frames{1};              ///< good frames in a row before TRACKING
-  int strange_frames{15};             ///< so often a face other than the learned one: learn it anew
-  int one_eye_frames{10};             ///< so long one eye keeps a track: its depth drifts
+  /// Where the wall is like skin or hair, colours tell less, and the rest must tell more.
+  double vague_ncc{0.45};            ///< generic pattern
+  double vague_outside{-0.3};        ///< at most
+  double vague_inside{0.5};          ///< at least
+  double enrolled_texture_ncc{0.7};  ///< an enrolled face, to be found
+  double keep_texture_ncc{0.6};      ///< learned texture, while TRACKING
+  double keep_ncc{0.1};              ///< generic pattern, while TRACKING
+  double keep_stereo_ncc{0.5};       ///< agreement of both eyes, while TRACKING
+  int confirm_frames{1};             ///< good frames in a row before TRACKING
+  int strange_frames{15};            ///< so often a face other than the learned one: learn it anew
+  int one_eye_frames{10};            ///< so long one eye keeps a track: its depth drifts
 };
 
 /// Which head is looked for.

@@ -201,7 +201,9 @@ bool RefinedEstimator::IsFace(const Candidate& c) const {
          c.score.ncc > (c.score.has_color ? e.lock_ncc : e.lock_gray_ncc) && BothEyes() &&
          c.refined.stereo_ncc > (c.score.has_color ? e.lock_stereo_ncc : e.lock_gray_stereo_ncc) &&
          (!c.score.has_color ||
-          (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside));
+          (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside) ||
+          (c.score.outside < e.vague_outside && c.score.inside > e.vague_inside &&
+           c.score.ncc > e.vague_ncc));
 }
 
 // What the face that was learned must show.
@@ -281,8 +283,8 @@ void RefinedEstimator::Learn() {
   for (const Band band : {kFineBand, kCoarseBand}) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (view_[i].seen())
-        texture_.Learn(
-            band, head_.refiner.Sample(view_, i, candidate_.refined.X_CM, band, texture_.points()));
+        texture_.Learn(band,
+                       head_.refiner.Sample(view_, i, candidate_.refined.X_CM, band, texture_));
     }
   }
 }

@@ -47,7 +47,7 @@ class PoseRefinerTest : public ::testing::Test {
     FaceTexture texture(SharedAdultHead().face);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t e = 0; e < 2; ++e)
-        texture.Learn(band, refiner_.Sample(view_, e, X_CM_, band, texture.points()));
+        texture.Learn(band, refiner_.Sample(view_, e, X_CM_, band, texture));
     }
     return texture;
   }
