@@ -53,6 +53,7 @@ class MeshScene {
 
   ImageView picture(std::size_t eye) const;
   const EyeGeometry& geometry(std::size_t eye) const { return eyes_[eye].geometry; }
+  const ColorModel& colors(std::size_t eye) const { return eyes_[eye].colors; }
 
  private:
   struct Eye {

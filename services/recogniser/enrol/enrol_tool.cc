@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,6 +53,22 @@ std::string Report(const Arguments& arguments, const Enrolment& e) {
   return text;
 }
 
+/// Before the work: that what comes of it can be written, and is not written over its source. A
+/// file that is there stays as it is.
+void RequireWritable(const Arguments& arguments) {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  if (fs::equivalent(arguments.log, arguments.output, none)) {
+    throw std::invalid_argument("--output: " + arguments.output +
+                                ": must not be the recording itself");
+  }
+  const bool existed = fs::exists(arguments.output, none);
+  if (!std::ofstream(arguments.output, std::ios::app)) {
+    throw std::runtime_error(arguments.output + ": cannot be written");
+  }
+  if (!existed) fs::remove(arguments.output, none);
+}
+
 }  // namespace
 
 int RunEnrolTool(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
@@ -69,6 +88,7 @@ int RunEnrolTool(int argc, const char* const* argv, std::ostream& out, std::ostr
   app.add_option("--set", arguments.settings, "one of them: KEY=VALUE")->take_all();
   app.callback([&] {
     const auto config = LoadConfig<RecogniserConfig>(arguments.config, arguments.settings);
+    RequireWritable(arguments);
     const Enrolment enrolment = Enrol(arguments.log, config);
     SaveHeadFile(arguments.output, enrolment.head);
     out << Report(arguments, enrolment);

@@ -129,7 +129,7 @@ FacePoints FacePointsOf(const HeadSurface& surface, double spacing_m) {
       const Vector3f right = PointAt(surface, y, azimuth);
       for (const float side : {1.0f, -1.0f}) {
         if (column == 0 && side < 0) continue;
-        const Vector3f p(side * right.x(), right.y(), right.z());
+        const Vector3f p = side > 0 ? right : PointAt(surface, y, -azimuth);
         const Vector3f n = surface.NormalAt(p);
         if (surface.HairSide(p) > -0.009f || n.z() > -0.05f) continue;
         const bool front = n.z() < -0.55f && p.z() < -0.030f && std::abs(p.x()) < 0.056f;

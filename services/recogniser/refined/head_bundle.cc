@@ -1,6 +1,7 @@
 #include "services/recogniser/refined/head_bundle.h"
 
 #include <cmath>
+#include <utility>
 
 #include "common/core/check.h"
 
@@ -34,7 +35,7 @@ HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double
       model_(std::make_unique<Model>(config, head)) {}
 
 void HeadBundle::Add(const StereoFrame& frame, const RigidTransform& X_CM) {
-  View& view = views_.emplace_back();
+  View view;
   view.X_CM = X_CM;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto picture = pair_.Picture(frame, i);
@@ -42,6 +43,7 @@ void HeadBundle::Add(const StereoFrame& frame, const RigidTransform& X_CM) {
     view.pictures[i] = *picture;
     view.pixels[i].assign(picture->data, picture->data + picture->size);
   }
+  views_.push_back(std::move(view));
 }
 
 void HeadBundle::Look(const View& view) {

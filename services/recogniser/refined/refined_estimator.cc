@@ -341,7 +341,8 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     // One eye can keep a track for a while, not begin one: its depth is a guess.
     good = BothEyes() && (IsKnownFace(candidate_, FindTextureNcc()) || IsNewFace());
     if (!good) colors_ = colors_before_;
-    good ? rejected_.clear() : RejectPlaces();
+    // A stranger's face is no rejected place: it must be found again to be learned.
+    good || strange_in_a_row_ > 0 ? rejected_.clear() : RejectPlaces();
   } else {
     strange_in_a_row_ = 0;
   }

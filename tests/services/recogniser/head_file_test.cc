@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "common/config/config_error.h"
+#include "common/core/random.h"
+#include "tests/support/config_refusal.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/temporary_folder.h"
 
@@ -84,6 +87,72 @@ TEST_F(HeadFileTest, WhatIsNoHeadIsRefusedWithFileKeyValueAndRule) {
 TEST_F(HeadFileTest, AFolderThatIsNotThereIsNamedWhenWriting) {
   EXPECT_THAT([&] { SaveHeadFile(folder_ / "none/head.yaml", HeadGeometry{}); },
               ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("none/head.yaml")));
+}
+
+TEST_F(HeadFileTest, AnEnrolledFaceIsReadBackToAThousandth) {
+  const HeadSurface adult{HeadShape{}};
+  HeadGeometry head{HeadSurface(HeadShape{}, TableOf(adult, 4)), {0, 0, 0}};
+  LearnedFace face;
+  Random random(4);
+  for (const Eigen::Vector3f& p : SharedAdultHead().face.points) {
+    face.points.push_back(head.surface.Onto(p));
+    for (auto& value : face.value) value.push_back(static_cast<float>(20 * random.Normal()));
+  }
+  head.face = face;
+  SaveHeadFile(name_, head);
+  const HeadGeometry read = LoadHeadFile(name_);
+  ASSERT_TRUE(read.face);
+  ASSERT_EQ(read.face->points.size(), face.points.size());
+  for (std::size_t i = 0; i < face.points.size(); ++i) {
+    EXPECT_LT((read.face->points[i] - face.points[i]).norm(), 1.2e-6f);
+    EXPECT_GT(read.face->normals[i].dot(head.surface.NormalAt(face.points[i])), 0.9999f);
+    for (const Band band : {kFineBand, kCoarseBand})
+      EXPECT_NEAR(read.face->value[band][i], face.value[band][i], 0.00051f);
+  }
+}
+
+TEST_F(HeadFileTest, AHeadWithoutAFaceIsReadBackWithoutOne) {
+  SaveHeadFile(name_, HeadGeometry{});
+  EXPECT_FALSE(LoadHeadFile(name_).face);
+}
+
+TEST(HeadFileFaceTest, EachPartOfAFaceThatIsWrongIsRefusedWithKeyValueAndRule) {
+  HeadFile good;
+  good.radii_mm.assign(642, 95);
+  good.face_points_mm.assign(300, 50);
+  good.face_fine.assign(100, 1);
+  good.face_coarse.assign(100, -1);
+  EXPECT_NO_THROW(good.ValidateOrThrow());
+  const auto expect_refusal = [&](const auto& spoil, const std::string& key,
+                                  const std::string& value, const std::string& rule) {
+    HeadFile bad = good;
+    spoil(&bad);
+    ExpectRefusal([&] { bad.ValidateOrThrow(); }, key, value, rule);
+  };
+  const double nan = std::nan("");
+  for (const std::size_t size : {299, 301, 297, 3, 1, 15003}) {
+    expect_refusal([&](HeadFile* f) { f->face_points_mm.resize(size, 50); }, "face_points_mm",
+                   std::to_string(size) + " numbers", "x y z of 100 to 5000 points");
+  }
+  for (const auto& [x, text] :
+       {std::pair(400.1, "400.1"), {-400.1, "-400.1"}, {nan, "nan"}, {INFINITY, "inf"}}) {
+    expect_refusal([&, x = x](HeadFile* f) { f->face_points_mm[299] = x; }, "face_points_mm", text,
+                   "-400 to 400 mm");
+  }
+  for (const auto& [key, values] : {std::pair("face_fine", &HeadFile::face_fine),
+                                    std::pair("face_coarse", &HeadFile::face_coarse)}) {
+    for (const std::size_t size : {0, 99, 101}) {
+      expect_refusal([&, values = values](HeadFile* f) { (f->*values).resize(size); }, key,
+                     std::to_string(size) + " numbers", "one for each point of face_points_mm");
+    }
+    for (const auto& [x, text] : {std::pair(255.1, "255.1"), {-255.1, "-255.1"}, {nan, "nan"}}) {
+      expect_refusal([&, x = x, values = values](HeadFile* f) { (f->*values)[99] = x; }, key, text,
+                     "-255 to 255");
+    }
+  }
+  // Brightness of a face that is not there.
+  expect_refusal([](HeadFile* f) { f->face_points_mm.clear(); }, "face_fine", "100 numbers",
+                 "one for each point");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "services/recogniser/refined/head_geometry.h"
 #include "tests/support/mesh_scene.h"
 
 namespace visavis {
@@ -58,6 +59,18 @@ TEST(FacePointsTest, PointsLieOnTheSurfaceInFrontAndBelowTheHair) {
     EXPECT_NEAR(Face().normals[i].norm(), 1, 1e-5f);
     EXPECT_GT(Face().normals[i].dot(p), 0);
   }
+}
+
+TEST(FacePointsTest, PointsOfAHeadWhoseHalvesDifferLieOnItTooOnBothSides) {
+  HeadTable table = TableOf(SharedAdultHead().surface, 3);
+  const Icosphere sphere(3);
+  for (std::size_t i = 0; i < table.radii_m.size(); ++i)
+    table.radii_m[i] += 0.01f * sphere.vertices()[i].x();
+  const HeadSurface surface(HeadShape{}, table);
+  const FacePoints face = FacePointsOf(surface, 0.01);
+  EXPECT_GT(face.size(), 80u);
+  for (const Vector3f& p : face.points)
+    EXPECT_NEAR(p.norm(), surface.Radius(p.normalized()), 2e-6f);
 }
 
 TEST(FacePointsTest, NeighboursAreAboutTheSpacingApart) {

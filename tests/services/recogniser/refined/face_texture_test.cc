@@ -161,5 +161,76 @@ TEST(FaceTextureTest, ForgetGivesTheGenericPointsBackAndTheNextFaceIsTakenAsItIs
   }
 }
 
+/// Every other point of the face, moved, with random brightness.
+LearnedFace HalfAFace() {
+  LearnedFace face;
+  for (std::size_t i = 0; i < Face().size(); i += 2) {
+    face.points.push_back(Face().points[i] + Eigen::Vector3f(0.001f, 0.002f, 0));
+    face.normals.push_back(Face().normals[i]);
+  }
+  face.value = {RandomValues(1), RandomValues(2, 25)};
+  for (auto& value : face.value) value.resize(face.points.size());
+  return face;
+}
+
+TEST(FaceTextureTest, WhatWasLearnedHoldsThePointsSeenAndTheirBrightnessInBothBands) {
+  FaceTexture texture(Face());
+  EXPECT_TRUE(texture.Learned().points.empty());
+  const std::vector<float> fine = RandomValues(1), coarse = RandomValues(2);
+  FaceSamples samples = SamplesOf(fine);
+  for (std::size_t i = 0; i < Face().size(); i += 2) samples.seen[i] = 0;
+  texture.Learn(kFineBand, samples);
+  samples.value = coarse;
+  texture.Learn(kCoarseBand, samples);
+  const LearnedFace face = texture.Learned();
+  ASSERT_EQ(face.points.size(), Face().size() / 2);
+  for (std::size_t i = 0; i < face.points.size(); ++i) {
+    EXPECT_EQ(face.points[i], Face().points[2 * i + 1]);
+    EXPECT_EQ(face.normals[i], Face().normals[2 * i + 1]);
+    EXPECT_NEAR(face.value[kFineBand][i], fine[2 * i + 1], 1e-5);
+    EXPECT_NEAR(face.value[kCoarseBand][i], coarse[2 * i + 1], 1e-5);
+  }
+  EXPECT_FALSE(texture.enrolled());
+}
+
+TEST(FaceTextureTest, AFaceThatIsRememberedIsEnrolledAndGivenBackAsItWas) {
+  const LearnedFace face = HalfAFace();
+  FaceTexture texture(Face());
+  texture.Learn(kFineBand, SamplesOf(RandomValues(3)));  // of somebody else: gone
+  texture.Remember(face);
+  EXPECT_TRUE(texture.enrolled());
+  EXPECT_TRUE(texture.learned());
+  const LearnedFace again = texture.Learned();
+  EXPECT_EQ(again.points, face.points);
+  EXPECT_EQ(again.normals, face.normals);
+  EXPECT_EQ(again.value, face.value);
+}
+
+TEST(FaceTextureTest, ARememberedFaceCountsAsLearnedForLong) {
+  const LearnedFace face = HalfAFace();
+  FaceTexture texture(Face());
+  texture.Remember(face);
+  std::vector<float> changed = face.value[kFineBand];
+  changed[5] += 30;
+  texture.Learn(kFineBand, SamplesOf(changed));
+  const float shift = texture.pattern(kFineBand)[5] - face.value[kFineBand][5];
+  EXPECT_GT(shift, 0.05f);
+  EXPECT_LT(shift, 0.5f);
+}
+
+TEST(FaceTextureTest, ForgetEndsAnEnrolment) {
+  FaceTexture texture(Face());
+  texture.Remember(HalfAFace());
+  texture.Forget();
+  EXPECT_FALSE(texture.enrolled());
+  EXPECT_FALSE(texture.learned());
+  EXPECT_EQ(texture.points().points, Face().points);
+  EXPECT_EQ(texture.known().size(), Face().size());
+  EXPECT_TRUE(texture.Learned().points.empty());
+  const std::vector<float> other = RandomValues(4);
+  texture.Learn(kFineBand, SamplesOf(other));
+  EXPECT_LT(LargestDifference(texture.pattern(kFineBand), other), 1e-5);
+}
+
 }  // namespace
 }  // namespace visavis

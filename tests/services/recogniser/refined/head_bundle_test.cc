@@ -1,0 +1,177 @@
+#include "services/recogniser/refined/head_bundle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/core/random.h"
+#include "tests/support/mesh_scene.h"
+#include "tests/support/stereo_scene.h"
+
+namespace visavis {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kDistance_m = 1;
+constexpr int kRounds = 8;
+
+/// The generic adult with other cheeks, forehead and chin: up to 4 mm off the painted head.
+HeadGeometry OtherHead() {
+  const HeadSurface& adult = SharedAdultHead().surface;
+  HeadTable table = TableOf(adult, 4);
+  const Icosphere sphere(4);
+  const auto& directions = sphere.vertices();
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Eigen::Vector3f& d = directions[i];
+    table.radii_m[i] += 0.004f * std::sin(4 * d.y()) * std::cos(3 * d.x());
+  }
+  return {HeadSurface(HeadShape{}, table), {0, 0, 0}};
+}
+
+const std::vector<Vector6d>& Views() {
+  static const std::vector<Vector6d> views = {
+      PhiOf(0, 0, 1000, 0, 0, 0),        PhiOf(30, -10, 980, 3, 14, 2),
+      PhiOf(-30, 10, 1020, -3, -14, 0),  PhiOf(10, 20, 1000, 0, 3, 12),
+      PhiOf(-10, -20, 1010, 2, -3, -12), PhiOf(20, 10, 990, -4, 10, 10),
+      PhiOf(-20, -5, 1000, 0, -10, -9)};
+  return views;
+}
+
+/// How the poses of a bundle lie to the truth.
+struct PoseErrors {
+  RigidTransform offset;               ///< mean, of the bundle's head frame in the painted one
+  double position_m{0}, angle_rad{0};  ///< rms about it
+};
+PoseErrors ErrorsOf(const HeadBundle& bundle) {
+  const auto n = static_cast<double>(bundle.num_views());
+  Vector3d p = Vector3d::Zero(), w = Vector3d::Zero();
+  std::vector<RigidTransform> offsets;
+  for (std::size_t i = 0; i < bundle.num_views(); ++i) {
+    offsets.push_back(TransformFromPhi(Views()[i]).inverse() * bundle.pose(i));
+    p += offsets.back().translation() / n;
+    w += LogRotation(offsets.back().linear()) / n;
+  }
+  double square_m = 0, square_rad = 0;
+  for (const RigidTransform& X : offsets) {
+    square_m += (X.translation() - p).squaredNorm() / n;
+    square_rad += (LogRotation(X.linear()) - w).squaredNorm() / n;
+  }
+  return {MakeTransform(ExpRotation(w), p), std::sqrt(square_m), std::sqrt(square_rad)};
+}
+
+/// rms distance [m] of the face of @p head, its frame at @p offset, from the painted surface.
+double ShapeError(const HeadGeometry& head, const RigidTransform& offset) {
+  double sum = 0;
+  for (const Eigen::Vector3f& p : SharedAdultHead().face.points) {
+    const Vector3d on_head = head.surface.Onto(p).cast<double>();
+    const Eigen::Vector3f painted = (offset * on_head).cast<float>();
+    const float beyond = painted.norm() - SharedAdultHead().surface.Radius(painted.normalized());
+    sum += static_cast<double>(beyond * beyond);
+  }
+  return std::sqrt(sum / static_cast<double>(SharedAdultHead().face.size()));
+}
+
+/// FeaturedHead's features on a skin of stronger grain.
+Color Speckled(const Eigen::Vector3f& p_M) {
+  const Color featured = FeaturedHead(p_M);
+  return featured[0] < 150 ? featured : GrainyHead(p_M);
+}
+
+class HeadBundleTest : public ::testing::Test {
+ protected:
+  HeadBundleTest() : scene_(TestRig()) { scene_.Show(TransformFromPhi(Views()[0]), GrainyHead); }
+
+  StereoFrame Frame() const {
+    StereoFrame frame;
+    frame.right = scene_.picture(0);
+    frame.left = scene_.picture(1);
+    return frame;
+  }
+  HeadBundle Bundle(const HeadGeometry& head) const {
+    return {RefinerConfig{}, TestRig(), kDistance_m, head, {scene_.colors(0), scene_.colors(1)}};
+  }
+  /// Shows all views to @p bundle, at poses that are some millimetres and degrees off.
+  void ShowAll(HeadBundle* bundle) {
+    Random random(11);
+    for (const Vector6d& phi : Views()) {
+      const auto off = [&](double size) { return size * random.Normal(); };
+      scene_.Show(TransformFromPhi(phi), Speckled);
+      bundle->Add(Frame(), TransformFromPhi(phi + PhiOf(off(1.5), off(1.5), off(3), off(1),
+                                                        off(1.5), off(1.5))));
+    }
+  }
+
+  MeshScene scene_;
+};
+
+TEST_F(HeadBundleTest, PosesShapeAndTextureComeToAgree) {
+  HeadBundle bundle = Bundle(OtherHead());
+  ShowAll(&bundle);
+  ASSERT_EQ(bundle.num_views(), Views().size());
+  const PoseErrors before = ErrorsOf(bundle);
+  const HeadBundle::Agreement first = bundle.Round();
+  HeadBundle::Agreement last;
+  for (int i = 1; i < kRounds; ++i) last = bundle.Round();
+  const PoseErrors after = ErrorsOf(bundle);
+  EXPECT_LT(after.position_m, 0.2 * before.position_m);
+  EXPECT_LT(after.angle_rad, 0.2 * before.angle_rad);
+  EXPECT_GT(last.texture_ncc, first.texture_ncc + 0.03);
+  EXPECT_GT(last.stereo_ncc, first.stereo_ncc);
+  EXPECT_LT(last.contour_px, 0.6 * first.contour_px);
+  EXPECT_LT(last.moved_m, 0.2 * first.moved_m);
+  EXPECT_LT(ShapeError(bundle.Enrolled(), after.offset),
+            0.6 * ShapeError(OtherHead(), after.offset));
+  // The head's frame stays where the given poses put it in the mean.
+  const RigidTransform moved = before.offset.inverse() * after.offset;
+  EXPECT_LT(moved.translation().norm(), 0.003);
+  EXPECT_LT(LogRotation(moved.linear()).norm(), 0.02);
+}
+
+TEST_F(HeadBundleTest, TheEnrolledHeadHasAFaceOnItsSurfaceThatAViewNotGivenShowsToo) {
+  HeadBundle bundle = Bundle(OtherHead());
+  ShowAll(&bundle);
+  for (int i = 0; i < kRounds; ++i) bundle.Round();
+  const HeadGeometry head = bundle.Enrolled();
+  ASSERT_TRUE(head.face);
+  EXPECT_GT(head.face->points.size(), 400u);
+  for (const Eigen::Vector3f& p : head.face->points) {
+    EXPECT_NEAR(p.norm(), head.surface.Radius(p.normalized()), 2e-6);
+  }
+  PreparedHead prepared(RefinerConfig{}, head);
+  FaceTexture texture(prepared.face);
+  texture.Remember(*head.face);
+  const RigidTransform truth = TransformFromPhi(PhiOf(-5, 8, 1005, 1, 6, -5));
+  const StereoView& view = scene_.Show(truth, Speckled);
+  const RigidTransform expected = truth * ErrorsOf(bundle).offset;
+  const Refined refined = prepared.refiner.Refine(view, expected, &texture, 8, 7);
+  EXPECT_GT(refined.texture_ncc, 0.95);
+  const RecognitionError error = ComputeRecognitionError(expected, refined.X_CM);
+  EXPECT_LT(error.position.norm(), 0.001);
+  EXPECT_LT(error.total_angle, 0.01);
+}
+
+TEST_F(HeadBundleTest, TheSameViewsGiveTheSameHeadBitForBit) {
+  HeadBundle one = Bundle(OtherHead()), other = Bundle(OtherHead());
+  for (HeadBundle* bundle : {&one, &other}) {
+    ShowAll(bundle);
+    for (int i = 0; i < 2; ++i) bundle->Round();
+  }
+  for (std::size_t i = 0; i < Views().size(); ++i)
+    EXPECT_EQ(one.pose(i).matrix(), other.pose(i).matrix());
+  EXPECT_EQ(one.Enrolled().face->points, other.Enrolled().face->points);
+  EXPECT_EQ(one.Enrolled().face->value, other.Enrolled().face->value);
+}
+
+TEST_F(HeadBundleTest, APairWithoutBothEyesIsRefusedAndLeavesNoView) {
+  HeadBundle bundle = Bundle(OtherHead());
+  for (const std::size_t missing : {0, 1}) {
+    StereoFrame frame = Frame();
+    (missing == 0 ? frame.right : frame.left).reset();
+    EXPECT_THROW(bundle.Add(frame, TransformFromPhi(Views()[0])), std::invalid_argument);
+    EXPECT_EQ(bundle.num_views(), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace visavis
