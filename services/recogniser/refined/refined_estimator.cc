@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kBoxRadius_m = 0.17;
 constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the enrolled face
+constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
 constexpr int kLeastBox_px = 32;
 constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
@@ -335,6 +336,8 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     }
   }
   if (!good) {
+    // A stranger who is gone is forgotten: the enrolled face is waited for.
+    if (bad_in_a_row_ == kStrangerGone) RememberEnrolled();
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
     candidate_ = Search();

@@ -36,7 +36,7 @@ LearnedFace Enrol(MeshScene* scene) {
     const StereoView& view = scene->Show(X_CM, FeaturedHead);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye)
-        texture.Learn(band, refiner.Sample(view, eye, X_CM, band, texture.points()));
+        texture.Learn(band, refiner.Sample(view, eye, X_CM, band, texture));
     }
   }
   return texture.Learned();
