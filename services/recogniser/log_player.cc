@@ -34,6 +34,12 @@ void LogPlayer::ReadRig() {
 }
 
 bool LogPlayer::ReadUntilReady() {
+  if (later_images_) {
+    images_ = std::move(*later_images_);
+    later_images_.reset();
+    has_images_ = true;
+    if (motion_.IsCertainAt(images_.utime)) return true;
+  }
   arm_state_t arm;
   rigid_transform_t camera;
   head_pose_t truth;
@@ -44,6 +50,13 @@ bool LogPlayer::ReadUntilReady() {
       motion_.AddArmState(arm.utime, arm.joint_names, arm.joint_position, arm.joint_velocity);
     } else if (Decode(event_, kCameraPoseChannel, &camera)) {
       motion_.AddCameraPose(camera.utime, FromMessage(camera));
+    } else if (has_images_) {
+      // No motion came in time: the pair goes on with what is known.
+      if (!Decode(event_, kStereoImagesChannel, &later_images_.emplace())) {
+        later_images_.reset();
+      } else {
+        return true;
+      }
     } else if (Decode(event_, kStereoImagesChannel, &images_)) {
       has_images_ = true;
     }

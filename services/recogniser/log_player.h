@@ -47,6 +47,7 @@ class LogPlayer {
   std::unique_ptr<FramePreparer> preparer_;
   images_t images_;
   bool has_images_{false};
+  std::optional<images_t> later_images_;  ///< came while images_ still waited for its motion
   std::optional<std::int64_t> last_utime_us_;
   std::map<std::int64_t, RigidTransform> truths_;
   Pair pair_;

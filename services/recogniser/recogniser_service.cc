@@ -82,8 +82,20 @@ void RecogniserService::SetRig(const RigDescription& description) {
   preparer_ = std::move(preparer);
   estimator_ = std::move(estimator);
   rig_ = description.rig;
-  swap_probe_ = std::make_unique<SwapProbe>([this] { return NewEstimator("refined", *rig_); });
+  swap_probe_ = std::make_unique<SwapProbe>([this] { return AnyFaceEstimator(); });
   BeginTrack();
+}
+
+// Finds whoever is there, in one frame.
+std::unique_ptr<Estimator> RecogniserService::AnyFaceEstimator() const {
+  RefinedSettings settings = config_.RefinedSettings();
+  settings.refined.evidence.confirm_frames = 1;
+  settings.start_X_CM.reset();
+  HeadGeometry head = refined_head_;
+  head.face.reset();
+  auto estimator = std::make_unique<RefinedEstimator>(settings, head, *rig_);
+  if (commanded_space_) estimator->SetSearchSpace(*commanded_space_);
+  return estimator;
 }
 
 std::unique_ptr<Estimator> RecogniserService::NewEstimator(const std::string& name,

@@ -51,6 +51,7 @@ class RecogniserService final : public Service {
   void OnCommand(const recogniser_command_t& message);
 
   void SetRig(const RigDescription& rig);
+  std::unique_ptr<Estimator> AnyFaceEstimator() const;
   std::unique_ptr<Estimator> NewEstimator(const std::string& name, const StereoRig& rig) const;
   void BeginTrack();
   void BeginSessionIfPairsJumpBack(std::int64_t utime_us);

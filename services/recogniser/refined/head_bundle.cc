@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kShapeLevel = 4;
 constexpr double kBoxRadius_m = 0.17;
+constexpr int kLeastBox_px = 32;
+constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
 constexpr float kMinFacing = 0.6f;
 constexpr ShapeEquations::Prior kPrior{0.010, 0.0008};
@@ -51,6 +53,8 @@ void HeadBundle::Look(const View& view) {
     ImageView picture = view.pictures[i];
     picture.data = view.pixels[i].data();
     const PixelBox box = pair_.BoxAround(i, view.X_CM, kBoxRadius_m);
+    view_[i] = {&pair_.eye(i), nullptr, nullptr};
+    if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
     scores_[i].Build(picture, colors_[i], box);
     bands_[i].Build(picture, box);
     view_[i] = {&pair_.eye(i), &scores_[i], &bands_[i]};
@@ -64,6 +68,7 @@ void HeadBundle::LearnTexture() {
     Look(view);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye) {
+        if (!view_[eye].seen()) continue;
         texture.Learn(band, model_->prepared.refiner.Sample(view_, eye, view.X_CM, band, texture));
       }
     }
@@ -100,13 +105,15 @@ void HeadBundle::AddShape(const View& view, Band band) {
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
   std::array<FaceSamples, 2> samples{FaceSamples(points.size()), FaceSamples(points.size())};
   for (std::size_t eye = 0; eye < 2; ++eye) {
+    if (!view_[eye].seen()) continue;
     FaceSamples& s = samples[eye];
     SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), band, kMinFacing, &s);
     const GainOffset fit = FitPattern(s, pattern, model_->texture.known());
+    if (fit.count < kFewestPoints || !(fit.gain > 0)) continue;
     const auto gain = static_cast<float>(fit.gain), offset = static_cast<float>(fit.offset);
     const float sigma = kRelativeSigma * gain * static_cast<float>(fit.pattern_rms) + kNoise;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!s.seen[i]) continue;
+      if (!s.seen[i] || !model_->texture.known()[i]) continue;
       const Eigen::Vector3f d = points.points[i].normalized();
       const float residual = gain * pattern[i] + offset - s.value[i];
       const float robust = 1 + residual * residual / (4 * sigma * sigma);
@@ -119,6 +126,7 @@ void HeadBundle::AddShape(const View& view, Band band) {
 void HeadBundle::AddOutline(const View& view) {
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
   for (std::size_t eye = 0; eye < 2; ++eye) {
+    if (!view_[eye].seen()) continue;
     for (const OutlineMeasurement& m :
          model_->prepared.refiner.Outline(view_, eye, view.X_CM, kOutlineReach_px)) {
       const Eigen::Vector3f d = m.p_M.normalized();

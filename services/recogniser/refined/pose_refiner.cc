@@ -92,7 +92,7 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
     ++eyes;
   }
   refined->texture_ncc /= std::max(eyes, 1);
-  if (eyes == 2 && config_.stereo_weight_with_texture > 0) {
+  if (eyes == 2) {
     refined->stereo_ncc =
         AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma,
                   static_cast<float>(config_.stereo_weight_with_texture), equations);

@@ -44,7 +44,7 @@ struct EvidenceConfig {
   double vague_ncc{0.45};            ///< generic pattern
   double vague_outside{-0.3};        ///< at most
   double vague_inside{0.5};          ///< at least
-  double enrolled_texture_ncc{0.7};  ///< an enrolled face, to be found
+  double enrolled_texture_ncc{0.8};  ///< an enrolled face, to be found
   double keep_texture_ncc{0.6};      ///< learned texture, while TRACKING
   double keep_ncc{0.1};              ///< generic pattern, while TRACKING
   double keep_stereo_ncc{0.5};       ///< agreement of both eyes, while TRACKING

@@ -44,6 +44,7 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGe
       bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
              BandImages(pair_.eye(1).width, pair_.eye(1).height)},
       population_(settings.refined.population, settings.seed) {
+  settings_.space = InM(settings.space);
   if (head.face) {
     enrolled_.emplace(head_.face);
     enrolled_->Remember(*head.face);
@@ -84,15 +85,21 @@ void RefinedEstimator::LookForEnrolled() {
   if (!enrolled_ || texture_.enrolled() || frames_ % kEnrolledEvery != 0) return;
   const Candidate known =
       RefineFrom(candidate_.refined.X_CM, &*enrolled_, settings_.refined.search_iterations, 7);
-  if (!(known.refined.texture_ncc > settings_.refined.evidence.enrolled_texture_ncc)) return;
+  if (!HasLooks(known, settings_.refined.evidence.enrolled_texture_ncc)) return;
   RememberEnrolled();
   candidate_ = known;
 }
 
 void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
-  settings_.space = space;
+  settings_.space = InM(space);
   centre_.reset();
-  population_.SetSpace(space);
+  population_.SetSpace(settings_.space);
+}
+
+SearchSpace RefinedEstimator::InM(SearchSpace space) const {
+  space.min.head<3>() -= X_MR_.translation();
+  space.max.head<3>() -= X_MR_.translation();
+  return space;
 }
 
 void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
@@ -209,8 +216,12 @@ bool RefinedEstimator::IsFace(const Candidate& c) const {
 
 // What the face that was learned must show.
 bool RefinedEstimator::IsKnownFace(const Candidate& c, double least_texture_ncc) const {
+  return texture_.learned() && HasLooks(c, least_texture_ncc);
+}
+
+bool RefinedEstimator::HasLooks(const Candidate& c, double least_texture_ncc) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  return IsPlausible(c.refined.X_CM) && texture_.learned() && c.refined.converged() &&
+  return IsPlausible(c.refined.X_CM) && c.refined.converged() &&
          c.refined.texture_ncc > least_texture_ncc && c.score.ncc > e.keep_ncc &&
          (!BothEyes() || c.refined.stereo_ncc > e.keep_stereo_ncc);
 }
@@ -303,7 +314,7 @@ void RefinedEstimator::MoveAnchor() {
 // The search space moves with a tracked head; a lost one is looked for where the configuration puts
 // it and round its last place by turns.
 void RefinedEstimator::FollowHead() {
-  if (estimate_.status == TrackStatus::kTracking) {
+  if (estimate_.status == TrackStatus::kTracking || bad_in_a_row_ == 0) {
     CentreOn(X_CM_->translation());
   } else if (centre_ && bad_in_a_row_ % 2 == 1) {
     is_centred_ = false;
@@ -342,7 +353,9 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     population_.Renew(0.3);
     candidate_ = Search();
     // One eye can keep a track for a while, not begin one: its depth is a guess.
-    good = BothEyes() && (IsKnownFace(candidate_, FindTextureNcc()) || IsNewFace());
+    const bool known = IsKnownFace(candidate_, FindTextureNcc());
+    if (known || !BothEyes()) strange_in_a_row_ = 0;
+    good = BothEyes() && (known || IsNewFace());
     if (!good) colors_ = colors_before_;
     // A stranger's face is no rejected place: it must be found again to be learned.
     good || strange_in_a_row_ > 0 ? rejected_.clear() : RejectPlaces();

@@ -87,6 +87,11 @@ class RefinedEstimator final : public Estimator {
     const EvidenceConfig& e = settings_.refined.evidence;
     return texture_.enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc;
   }
+  /// What the face of the texture that @p candidate was refined with must show.
+  bool HasLooks(const Candidate& candidate, double least_texture_ncc) const;
+  /// A space of poses of R as one of poses of M: their places differ by the offset, at any small
+  /// angle.
+  SearchSpace InM(SearchSpace space) const;
   bool IsNewFace();
   void Judge(bool good);
   void Learn();

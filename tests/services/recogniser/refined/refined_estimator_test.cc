@@ -16,6 +16,12 @@ const Vector6d kPlace = PhiOf(40, -20, 1000, 4, -8, 5);
 double FrozenTime() { return 0; }
 
 /// A painted head before an estimator with the default settings.
+SearchSpace Shifted(SearchSpace space, const Eigen::Vector3d& by_m) {
+  space.min.head<3>() += by_m;
+  space.max.head<3>() += by_m;
+  return space;
+}
+
 class RefinedEstimatorTest : public ::testing::Test {
  protected:
   RefinedEstimatorTest()
@@ -148,7 +154,9 @@ TEST_F(RefinedEstimatorTest, ResetForgetsTheHeadAndTheSameFramesGiveTheSamePoses
 TEST_F(RefinedEstimatorTest, PosesAreToldFromTheHeadsOwnOrigin) {
   HeadGeometry head;
   head.p_MR_m = {0.01, -0.03, 0.02};
-  RefinedEstimator shifted(RecogniserConfig{}.RefinedSettings(), head, TestRig());
+  RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
+  settings.space = Shifted(settings.space, head.p_MR_m);  // the space is one of reported poses
+  RefinedEstimator shifted(settings, head, TestRig());
   SeeHeadAt(kPlace);
   StereoFrame frame;
   frame.right = scene_.picture(0);
@@ -178,6 +186,7 @@ TEST_F(RefinedEstimatorTest, AStartIsTheHeadsOwnOriginsToo) {
   settings.start_X_CM = truth_;
   RefinedEstimator plain(settings, HeadGeometry{}, TestRig());
   settings.start_X_CM = truth_ * X_MR;
+  settings.space = Shifted(settings.space, head.p_MR_m);
   RefinedEstimator shifted(settings, head, TestRig());
   const RigidTransform X_CM = *plain.Process(frame, {}, &timer_).X_CM;
   EXPECT_TRUE((X_CM * X_MR).isApprox(*shifted.Process(frame, {}, &timer_).X_CM, 1e-9));
