@@ -37,8 +37,8 @@ constexpr bool IsFace(Label label) {
 }
 
 /// Label of a mesh part by its material's name, e.g. "Hair_short" or "skin.001": the first known
-/// word (skin, face, neck, hair, cap, hat, cloth, shirt, eye, brow, lash, lip, mouth, nostril, ear)
-/// found in it, case-insensitive, brow and lash before eye, nostril and ear after all others.
+/// word found in it, case-insensitive. The more special come first: brow before eye ("eyebrow"),
+/// nostril before skin, ear ("beard", "rear") last.
 std::optional<Label> LabelFromMaterialName(std::string_view name);
 
 }  // namespace visavis

@@ -1,6 +1,7 @@
 #include "services/recogniser/log_player.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "common/bus/channels.h"
 #include "common/convert/pose_message.h"
@@ -43,6 +44,7 @@ bool LogPlayer::ReadUntilReady() {
   arm_state_t arm;
   rigid_transform_t camera;
   head_pose_t truth;
+  images_t images;
   while (reader_.Next(&event_)) {
     if (Decode(event_, kHeadPoseTruthChannel, &truth)) {
       if (HasPose(truth)) truths_[truth.utime] = FromMessage(truth);
@@ -50,14 +52,12 @@ bool LogPlayer::ReadUntilReady() {
       motion_.AddArmState(arm.utime, arm.joint_names, arm.joint_position, arm.joint_velocity);
     } else if (Decode(event_, kCameraPoseChannel, &camera)) {
       motion_.AddCameraPose(camera.utime, FromMessage(camera));
-    } else if (has_images_) {
-      // No motion came in time: the pair goes on with what is known.
-      if (!Decode(event_, kStereoImagesChannel, &later_images_.emplace())) {
-        later_images_.reset();
-      } else {
+    } else if (Decode(event_, kStereoImagesChannel, &images)) {
+      if (has_images_) {  // no motion came in time: the pair goes on with what is known
+        later_images_ = std::move(images);
         return true;
       }
-    } else if (Decode(event_, kStereoImagesChannel, &images_)) {
+      images_ = std::move(images);
       has_images_ = true;
     }
     if (has_images_ && motion_.IsCertainAt(images_.utime)) return true;

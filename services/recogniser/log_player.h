@@ -20,7 +20,7 @@ namespace visavis {
 
 /// Reads a log pair by pair, decoded once, so that many estimators can be run on each pair: what
 /// the recogniser's service does for one. A pair is handed out once a motion sample at or after it
-/// has come, or the log has ended.
+/// has come, or the next pair, or the log has ended.
 class LogPlayer {
  public:
   /// @throws std::runtime_error where the log holds no rig.

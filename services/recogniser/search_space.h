@@ -46,6 +46,8 @@ struct SearchSpace {
   static SearchSpace FromConfig(const SearchSpaceConfig& config);
 
   Vector6d range() const { return max - min; }
+  /// [m] along the optical axis, of the middle.
+  double distance() const { return 0.5 * (min[2] + max[2]); }
   Vector6d Clamp(const Vector6d& phi) const { return phi.cwiseMax(min).cwiseMin(max); }
   bool Contains(const Vector6d& phi) const {
     return (phi.array() >= min.array()).all() && (phi.array() <= max.array()).all();

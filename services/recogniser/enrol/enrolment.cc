@@ -14,7 +14,6 @@ namespace {
 constexpr int kReadings = 3, kMostRounds = 60;
 constexpr double kStill_m = 2e-5;  ///< shape changes less in a round: done
 constexpr std::size_t kMostViews = 60, kFewestViews = 3;
-constexpr double kMiddleDistance = 0.5;
 
 double NoTime() { return 0; }
 
@@ -49,9 +48,8 @@ std::unique_ptr<HeadBundle> BundleOf(const std::string& log, const RecogniserCon
                                      const HeadGeometry& head, const Reading& reading) {
   LogPlayer player(log);
   const RefinedSettings settings = config.RefinedSettings();
-  const double distance_m = kMiddleDistance * (settings.space.min[2] + settings.space.max[2]);
-  auto bundle = std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(), distance_m,
-                                             head, reading.colors);
+  auto bundle = std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(),
+                                             settings.space.distance(), head, reading.colors);
   const auto views = reading.selection.Views(kMostViews);
   auto view = views.begin();
   std::int64_t frame = 0;

@@ -3,25 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/recogniser/refined/head_geometry.h"
+
 namespace visavis {
 namespace {
 
 constexpr double kSameView_rad = 0.05;
 constexpr int kSettled = 5;  ///< frames of a track before its pose is taken
 
-/// Where the camera is, seen from the head: unit vector in M.
-Eigen::Vector3d DirectionOf(const RigidTransform& X_CM) {
-  return -(X_CM.linear().transpose() * X_CM.translation()).normalized();
-}
-
 }  // namespace
 
 void ViewSelection::Add(std::int64_t frame, const RigidTransform* X_CM) {
   tracked_in_a_row_ = X_CM != nullptr ? tracked_in_a_row_ + 1 : 0;
   if (tracked_in_a_row_ < kSettled) return;
-  const Eigen::Vector3d direction = DirectionOf(*X_CM);
+  const Eigen::Vector3d direction = TowardsCamera(*X_CM);
   const bool known = std::any_of(views_.begin(), views_.end(), [&](const SelectedView& view) {
-    return direction.dot(DirectionOf(view.X_CM)) > std::cos(kSameView_rad);
+    return direction.dot(TowardsCamera(view.X_CM)) > std::cos(kSameView_rad);
   });
   if (!known) views_.push_back({frame, *X_CM});
 }
@@ -36,7 +33,7 @@ std::vector<SelectedView> ViewSelection::Views(std::size_t most) const {
 ViewSelection::Range ViewSelection::DirectionRange() const {
   Range range{INFINITY, -INFINITY, INFINITY, -INFINITY};
   for (const SelectedView& view : views_) {
-    const Eigen::Vector3d d = DirectionOf(view.X_CM);  // (0, 0, -1) when it looks at the camera
+    const Eigen::Vector3d d = TowardsCamera(view.X_CM);  // (0, 0, -1) when it looks at the camera
     const double yaw = std::atan2(-d.x(), -d.z()), pitch = std::asin(-d.y());
     range.min_yaw = std::min(range.min_yaw, yaw);
     range.max_yaw = std::max(range.max_yaw, yaw);

@@ -20,11 +20,9 @@ inline constexpr int kBandSteps = 64;
 inline constexpr float kBandUnit = 1.0f / kBandSteps;  ///< [levels]
 
 /// The generic pattern's points in M [m], padded with points that are turned away from every eye.
-struct PatternPoints {
-  std::vector<float> x, y, z, normal_x, normal_y, normal_z, n_dot_p;
+struct PatternPoints : SurfacePoints {
   std::vector<std::int32_t> value;  ///< of the pattern, -127 to 127
 
-  int size() const { return static_cast<int>(x.size()); }
   void Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m, int pattern);
   void Pad();
 };

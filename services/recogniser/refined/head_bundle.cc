@@ -9,8 +9,6 @@ namespace visavis {
 namespace {
 
 constexpr int kShapeLevel = 4;
-constexpr double kBoxRadius_m = 0.17;
-constexpr int kLeastBox_px = 32;
 constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
 constexpr float kMinFacing = 0.6f;
@@ -52,7 +50,7 @@ void HeadBundle::Look(const View& view) {
   for (std::size_t i = 0; i < 2; ++i) {
     ImageView picture = view.pictures[i];
     picture.data = view.pixels[i].data();
-    const PixelBox box = pair_.BoxAround(i, view.X_CM, kBoxRadius_m);
+    const PixelBox box = pair_.BoxAround(i, view.X_CM, kHeadRadius_m);
     view_[i] = {&pair_.eye(i), nullptr, nullptr};
     if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
     scores_[i].Build(picture, colors_[i], box);
@@ -103,10 +101,9 @@ void HeadBundle::AddShape(const View& view, Band band) {
   const FacePoints& points = model_->texture.points();
   const std::vector<float>& pattern = model_->texture.pattern(band);
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
-  std::array<FaceSamples, 2> samples{FaceSamples(points.size()), FaceSamples(points.size())};
+  FaceSamples s(points.size());
   for (std::size_t eye = 0; eye < 2; ++eye) {
     if (!view_[eye].seen()) continue;
-    FaceSamples& s = samples[eye];
     SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), band, kMinFacing, &s);
     const GainOffset fit = FitPattern(s, pattern, model_->texture.known());
     if (fit.count < kFewestPoints || !(fit.gain > 0)) continue;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "common/geometry/rigid_transform.h"
 #include "services/recogniser/refined/head_surface.h"
 #include "services/recogniser/refined/learned_face.h"
 
@@ -17,6 +18,11 @@ struct HeadGeometry {
   /// How an enrolled face looks. Its frame is fixed then, by these points; without, it is learned.
   std::optional<LearnedFace> face{};
 };
+
+/// Where the camera is, seen from a head at @p X_CM: unit vector in M.
+inline Eigen::Vector3d TowardsCamera(const RigidTransform& X_CM) {
+  return -(X_CM.linear().transpose() * X_CM.translation()).normalized();
+}
 
 /// Between the pupils of the generic adult, on its surface: where every head has them in M [m].
 Eigen::Vector3d AdultEyes();

@@ -27,8 +27,7 @@ KernelEye::KernelEye(const EyeGeometry& eye, const EyePose& pose)
   }
 }
 
-void ScorePoints::Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m,
-                      int score_shift) {
+void SurfacePoints::Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m) {
   x.push_back(p.x());
   y.push_back(p.y());
   z.push_back(p.z());
@@ -36,6 +35,11 @@ void ScorePoints::Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float 
   normal_y.push_back(n.y());
   normal_z.push_back(n.z());
   n_dot_p.push_back(n_dot_p_m);
+}
+
+void ScorePoints::Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m,
+                      int score_shift) {
+  SurfacePoints::Add(p, n, n_dot_p_m);
   shift.push_back(score_shift);
 }
 
@@ -45,13 +49,7 @@ void ScorePoints::Pad() {
 
 void PatternPoints::Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m,
                         int pattern) {
-  x.push_back(p.x());
-  y.push_back(p.y());
-  z.push_back(p.z());
-  normal_x.push_back(n.x());
-  normal_y.push_back(n.y());
-  normal_z.push_back(n.z());
-  n_dot_p.push_back(n_dot_p_m);
+  SurfacePoints::Add(p, n, n_dot_p_m);
   value.push_back(pattern);
 }
 

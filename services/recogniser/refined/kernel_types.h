@@ -28,6 +28,14 @@ struct KernelEye {
   float R_CM[3][3];
 };
 
+/// Points of a surface in M [m] with unit normals, column by column.
+struct SurfacePoints {
+  std::vector<float> x, y, z, normal_x, normal_y, normal_z, n_dot_p;
+
+  int size() const { return static_cast<int>(x.size()); }
+  void Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m);
+};
+
 /// An array of @p kPer values a point, of which the last points are copied to a block that is
 /// filled up with zeros: kernels may read whole blocks of kLanes points.
 template <typename T, int kPer = 1>

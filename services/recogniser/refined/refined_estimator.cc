@@ -6,11 +6,9 @@
 namespace visavis {
 namespace {
 
-constexpr double kBoxRadius_m = 0.17;
 constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the enrolled face
 constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
-constexpr int kLeastBox_px = 32;
 constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
 
@@ -28,8 +26,6 @@ Matrix6d Covariance(const Matrix6d& information, const Eigen::Vector3d& p_MR_C) 
   return lever * covariance * lever.transpose();
 }
 
-double MiddleDistance(const SearchSpace& space) { return 0.5 * (space.min[2] + space.max[2]); }
-
 }  // namespace
 
 RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head,
@@ -37,7 +33,7 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGe
     : settings_(settings),
       head_(settings.refined.refiner, head),
       X_MR_(MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m)),
-      pair_(rig, MiddleDistance(settings.space)),
+      pair_(rig, settings.space.distance()),
       texture_(head_.face),
       scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
               ScoreMap(pair_.eye(1).width, pair_.eye(1).height)},
@@ -122,7 +118,7 @@ void RefinedEstimator::BuildMaps(const RigidTransform* X_CM) {
   for (std::size_t i = 0; i < 2; ++i) {
     view_[i] = {&pair_.eye(i), nullptr, nullptr};
     if (!pictures_[i]) continue;
-    const PixelBox box = X_CM ? pair_.BoxAround(i, *X_CM, kBoxRadius_m) : pair_.WholeBox(i);
+    const PixelBox box = X_CM ? pair_.BoxAround(i, *X_CM, kHeadRadius_m) : pair_.WholeBox(i);
     if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
     scores_[i].Build(*pictures_[i], colors_[i], box);
     bands_[i].Build(*pictures_[i], box);
@@ -304,8 +300,7 @@ void RefinedEstimator::Learn() {
 // The frame of a learned face goes where all views' generic models agree best.
 void RefinedEstimator::MoveAnchor() {
   RigidTransform& X_CM = candidate_.refined.X_CM;
-  const Eigen::Vector3d direction = -(X_CM.linear().transpose() * X_CM.translation()).normalized();
-  anchor_.Add(direction, head_.refiner.Generic(view_, X_CM));
+  anchor_.Add(TowardsCamera(X_CM), head_.refiner.Generic(view_, X_CM));
   const RigidTransform X_MN = anchor_.Correct();
   X_CM = X_CM * X_MN;
   texture_.Move(X_MN.inverse());

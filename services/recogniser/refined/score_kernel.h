@@ -17,11 +17,9 @@ struct ScoreView {
 
 /// Points of a surface in the M frame [m] and which of the scores counts there, padded with points
 /// that are turned away from every eye.
-struct ScorePoints {
-  std::vector<float> x, y, z, normal_x, normal_y, normal_z, n_dot_p;
+struct ScorePoints : SurfacePoints {
   std::vector<std::int32_t> shift;  ///< of the score's byte: 0 hair, 8 skin, 16 head
 
-  int size() const { return static_cast<int>(x.size()); }
   /// @p n: zero for a point that is never turned away.
   void Add(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float n_dot_p_m, int score_shift);
   void Pad();
