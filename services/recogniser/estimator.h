@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/image/image.h"
@@ -17,6 +18,8 @@ struct StereoFrame {
   std::int64_t utime_us{0};
   std::optional<ImageView> right, left;
 };
+
+struct HeadGeometry;
 
 enum class FeedforwardMode { kNone, kJacobian, kExact };
 
@@ -56,6 +59,10 @@ class Estimator {
 
   virtual void SetFeedforward(FeedforwardMode mode) = 0;
   virtual void SetSearchSpace(const SearchSpace& space) = 0;
+
+  /// The head as it was last learned from many views, and how many have been so far; null: none is
+  /// in use. Valid until the next call.
+  virtual std::pair<int, const HeadGeometry*> learned_head() const { return {0, nullptr}; }
 
   /// The evaluated population, fittest first, and how many generations made it.
   virtual const std::vector<Individual>& population() const = 0;

@@ -9,6 +9,7 @@
 #include "common/convert/pose_message.h"
 #include "common/convert/rig_message.h"
 #include "common/rigs/rig_file.h"
+#include "services/recogniser/head_file.h"
 #include "services/recogniser/recogniser_messages.h"
 #include "services/recogniser/refined/refined_estimator.h"
 
@@ -51,6 +52,7 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
     : config_(config),
       context_(context),
       timer_(&MonotonicSeconds),
+      background_(!context.live),
       ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
       feedforward_(ParseFeedforward(config.feedforward)),
       refined_head_(config.RefinedHead()),
@@ -102,7 +104,8 @@ std::unique_ptr<Estimator> RecogniserService::NewEstimator(const std::string& na
                                                            const StereoRig& rig) const {
   std::unique_ptr<Estimator> estimator;
   if (name == "refined") {
-    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), refined_head_, rig);
+    estimator = std::make_unique<RefinedEstimator>(config_.RefinedSettings(), refined_head_, rig,
+                                                   &background_);
   } else {
     estimator =
         std::make_unique<PublishedEstimator>(config_.PublishedSettings(), config_.head, rig);
@@ -253,8 +256,25 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
     newest_pair_us_ = std::max(newest_pair_us_, message.utime);  // of pairs that were any good
   }
   if (!refused.empty()) context_.status->Rejected(refused, context_.clock->NowUs());
+  if (estimate) SaveLearnedHead();
   if (estimate) LookForSwappedEyes(message, estimate->status == TrackStatus::kTracking);
   Complain("stale_images", picture_watch_.complaint());
+}
+
+// After the pair's pose went out, as nothing may delay it.
+void RecogniserService::SaveLearnedHead() {
+  const std::string& file = config_.refined.head.save;
+  const auto [count, head] = estimator_->learned_head();
+  if (count == saved_heads_) return;
+  saved_heads_ = count;
+  if (file.empty() || head == nullptr) return;
+  std::string complaint;
+  try {
+    SaveHeadFile(file, *head);
+  } catch (const std::exception& e) {
+    complaint = e.what();
+  }
+  Complain("save_head", complaint);
 }
 
 // After the pair's pose went out: this costs as much as a search.

@@ -9,6 +9,7 @@
 #include "common/service/offline_loop.h"
 #include "common/service/service.h"
 #include "common/service/service_flags.h"
+#include "services/recogniser/background_thread.h"
 #include "services/recogniser/ego_motion.h"
 #include "services/recogniser/estimator.h"
 #include "services/recogniser/frame_preparer.h"
@@ -64,12 +65,14 @@ class RecogniserService final : public Service {
   void PublishTiming(std::int64_t received_us);
   void PublishPopulation(std::int64_t utime_us);
   void LookForSwappedEyes(const images_t& message, bool is_tracking);
+  void SaveLearnedHead();
   void Complain(const std::string& name, const std::string& complaint);
   void TellMissing(const images_t& message);
 
   const RecogniserConfig config_;
   const ServiceContext context_;
   StageTimer timer_;
+  mutable BackgroundThread background_;
   std::optional<stereo_rig_t> rig_message_;  // of the rig in use
   std::optional<StereoRig> rig_;
   EgoMotion ego_motion_;
@@ -96,6 +99,7 @@ class RecogniserService final : public Service {
   std::optional<SearchSpace> commanded_space_;  // outlives a change of the rig
   bool paused_{false};
   bool head_was_tracked_{false};  // the last estimate was TRACKING or LOST
+  int saved_heads_{0};            // of those that the estimator has learned
   bool motion_missing_{false};    // at the last pair
 };
 

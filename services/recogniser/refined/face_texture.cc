@@ -26,7 +26,7 @@ void FaceTexture::Move(const RigidTransform& X_MN) {
 
 void FaceTexture::Forget() {
   learned_ = {};
-  enrolled_ = false;
+  fixed_ = false;
   points_ = generic_;
   for (auto& w : weight_) w.assign(generic_.size(), 0.0f);
   for (auto& v : value_) v.assign(generic_.size(), 0.0f);
@@ -41,7 +41,7 @@ void FaceTexture::Remember(const LearnedFace& face) {
   for (auto& w : weight_) w.assign(face.points.size(), 1 / kMinRate);
   known_.assign(face.points.size(), 1);
   learned_.fill(true);
-  enrolled_ = true;
+  fixed_ = true;
 }
 
 LearnedFace FaceTexture::Learned() const {

@@ -19,7 +19,7 @@ class FaceTexture {
   /// Takes over @p face, as if it had been learned for long.
   void Remember(const LearnedFace& face);
   /// Whether it was taken over, not learned here: its frame is fixed, and so is it.
-  bool enrolled() const { return enrolled_; }
+  bool fixed() const { return fixed_; }
   LearnedFace Learned() const;
   /// The points in the M frame.
   const FacePoints& points() const { return points_; }
@@ -37,7 +37,7 @@ class FaceTexture {
  private:
   const FacePoints& generic_;
   FacePoints points_;
-  bool enrolled_{false};
+  bool fixed_{false};
   std::array<bool, kNumBands> learned_{};
   std::array<std::vector<float>, kNumBands> value_, weight_;
   std::vector<unsigned char> known_;

@@ -1,5 +1,6 @@
 #include "services/recogniser/refined/head_bundle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,13 +12,37 @@ namespace {
 constexpr int kShapeLevel = 4;
 constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
+constexpr int kRadiusSteps = 4;  ///< of a fixed point iteration
 constexpr float kMinFacing = 0.6f;
 constexpr ShapeEquations::Prior kPrior{0.010, 0.0008};
 /// Neighbouring points and both bands see the same noise and the same errors.
 constexpr double kIndependence = 0.1, kOutlineIndependence = 0.3;
 constexpr float kRelativeSigma = 0.35f, kNoise = 0.5f;  ///< as in the refiner: contrast, levels
 
+PixelBox Common(const PixelBox& a, const PixelBox& b) {
+  return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
 }  // namespace
+
+HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, WorkingPair* pair) {
+  HeadView view;
+  view.X_CM = X_CM;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto picture = pair->Picture(frame, i);
+    VISAVIS_THROW_UNLESS(picture.has_value(), i);
+    HeadView::Crop& crop = view.crops[i];
+    crop.box = pair->BoxAround(i, X_CM, kHeadRadius_m);
+    crop.format = picture->format;
+    const std::ptrdiff_t channels = BytesPerPixel(crop.format);
+    for (int y = crop.box.y0; y < crop.box.y1; ++y) {
+      const std::uint8_t* row = picture->row(y);
+      crop.pixels.insert(crop.pixels.end(), row + channels * crop.box.x0,
+                         row + channels * crop.box.x1);
+    }
+  }
+  return view;
+}
 
 HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double distance_m,
                        const HeadGeometry& head, const std::array<ColorModel, 2>& colors)
@@ -34,25 +59,31 @@ HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double
       displaced_(start_table_.radii_m.size()),
       model_(std::make_unique<Model>(config, head)) {}
 
-void HeadBundle::Add(const StereoFrame& frame, const RigidTransform& X_CM) {
-  View view;
-  view.X_CM = X_CM;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto picture = pair_.Picture(frame, i);
-    VISAVIS_THROW_UNLESS(picture.has_value(), i);
-    view.pictures[i] = *picture;
-    view.pixels[i].assign(picture->data, picture->data + picture->size);
+ImageView HeadBundle::Unfold(const HeadView::Crop& crop, std::size_t eye) {
+  const EyeGeometry& geometry = pair_.eye(eye);
+  const int channels = BytesPerPixel(crop.format);
+  std::vector<std::uint8_t>& pixels = unfolded_[eye];
+  pixels.resize(static_cast<std::size_t>(geometry.width) *
+                static_cast<std::size_t>(geometry.height) * static_cast<std::size_t>(channels));
+  ImageView picture{pixels.data(), geometry.width, geometry.height, channels * geometry.width,
+                    pixels.size(), crop.format};
+  const std::ptrdiff_t row_size = std::ptrdiff_t{channels} * crop.box.width();
+  auto from = crop.pixels.begin();
+  for (int y = crop.box.y0; y < crop.box.y1; ++y, from += row_size) {
+    std::copy(from, from + row_size,
+              pixels.begin() + std::ptrdiff_t{y} * picture.stride +
+                  std::ptrdiff_t{channels} * crop.box.x0);
   }
-  views_.push_back(std::move(view));
+  return picture;
 }
 
-void HeadBundle::Look(const View& view) {
+void HeadBundle::Look(const HeadView& view) {
   for (std::size_t i = 0; i < 2; ++i) {
-    ImageView picture = view.pictures[i];
-    picture.data = view.pixels[i].data();
-    const PixelBox box = pair_.BoxAround(i, view.X_CM, kHeadRadius_m);
+    const HeadView::Crop& crop = view.crops[i];
+    const PixelBox box = Common(pair_.BoxAround(i, view.X_CM, kHeadRadius_m), crop.box);
     view_[i] = {&pair_.eye(i), nullptr, nullptr};
     if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
+    const ImageView picture = Unfold(crop, i);
     scores_[i].Build(picture, colors_[i], box);
     bands_[i].Build(picture, box);
     view_[i] = {&pair_.eye(i), &scores_[i], &bands_[i]};
@@ -62,7 +93,7 @@ void HeadBundle::Look(const View& view) {
 void HeadBundle::LearnTexture() {
   FaceTexture& texture = model_->texture;
   texture.Forget();
-  for (const View& view : views_) {
+  for (const HeadView& view : views_) {
     Look(view);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye) {
@@ -82,7 +113,7 @@ HeadGeometry HeadBundle::Enrolled() {
 
 HeadBundle::Agreement HeadBundle::RefinePoses() {
   Agreement sum;
-  for (View& view : views_) {
+  for (HeadView& view : views_) {
     Look(view);
     const Refined refined =
         model_->prepared.refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
@@ -97,7 +128,7 @@ HeadBundle::Agreement HeadBundle::RefinePoses() {
 
 // A surface point that moves by m along its direction d from M's origin changes what an eye sees
 // there by slope . R_CM d m.
-void HeadBundle::AddShape(const View& view, Band band) {
+void HeadBundle::AddShape(const HeadView& view, Band band) {
   const FacePoints& points = model_->texture.points();
   const std::vector<float>& pattern = model_->texture.pattern(band);
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
@@ -120,7 +151,7 @@ void HeadBundle::AddShape(const View& view, Band band) {
   }
 }
 
-void HeadBundle::AddOutline(const View& view) {
+void HeadBundle::AddOutline(const HeadView& view) {
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
   for (std::size_t eye = 0; eye < 2; ++eye) {
     if (!view_[eye].seen()) continue;
@@ -135,16 +166,37 @@ void HeadBundle::AddOutline(const View& view) {
 
 double HeadBundle::MoveSurface() {
   const std::vector<float> movement = shape_.Solve(displaced_, kPrior);
-  HeadTable table = start_table_;
   double sum = 0;
   for (std::size_t i = 0; i < displaced_.size(); ++i) {
     displaced_[i] += movement[i];
     sum += static_cast<double>(movement[i] * movement[i]);
-    table.radii_m[i] += displaced_[i];
   }
+  RebuildModel();
+  return std::sqrt(sum / static_cast<double>(movement.size()));
+}
+
+void HeadBundle::RebuildModel() {
+  HeadTable table = start_table_;
+  for (std::size_t i = 0; i < displaced_.size(); ++i) table.radii_m[i] += displaced_[i];
   model_ = std::make_unique<Model>(config_, HeadGeometry{HeadSurface(start_.surface.shape(), table),
                                                          start_.p_MR_m, std::nullopt});
-  return std::sqrt(sum / static_cast<double>(movement.size()));
+}
+
+void HeadBundle::MoveFrame(const RigidTransform& X_MN) {
+  const RigidTransform X_NM = X_MN.inverse();
+  for (HeadView& view : views_) view.X_CM = view.X_CM * X_NM;
+  const HeadSurface& surface_N = model_->prepared.head.surface;
+  const std::vector<Eigen::Vector3f>& directions = shape_.sphere().vertices();
+  const Eigen::Isometry3f X(X_NM.matrix().cast<float>());
+  for (std::size_t i = 0; i < displaced_.size(); ++i) {
+    float radius = start_table_.radii_m[i] + displaced_[i];
+    for (int k = 0; k < kRadiusSteps; ++k) {
+      const Eigen::Vector3f p_N = X * (radius * directions[i]);
+      radius -= p_N.norm() - surface_N.Radius(p_N.normalized());
+    }
+    displaced_[i] = radius - start_table_.radii_m[i];
+  }
+  RebuildModel();
 }
 
 HeadBundle::Agreement HeadBundle::Round() {
@@ -152,7 +204,7 @@ HeadBundle::Agreement HeadBundle::Round() {
   Agreement agreement = RefinePoses();
   LearnTexture();
   shape_.Clear();
-  for (const View& view : views_) {
+  for (const HeadView& view : views_) {
     Look(view);
     for (const Band band : {kFineBand, kCoarseBand}) AddShape(view, band);
     AddOutline(view);

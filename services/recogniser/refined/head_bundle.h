@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/stereo_rig.h"
@@ -11,6 +12,19 @@
 #include "services/recogniser/refined/working_pair.h"
 
 namespace visavis {
+
+/// A view of a head that is kept: the part of both pictures round it, at the working resolution.
+struct HeadView {
+  struct Crop {
+    PixelBox box;
+    PixelFormat format{PixelFormat::kGray};
+    std::vector<std::uint8_t> pixels;  ///< rows of the box
+  };
+  std::array<Crop, 2> crops;  ///< right, left
+  RigidTransform X_CM;
+};
+/// Copies what @p frame, which must have both eyes, shows of a head at @p X_CM or near.
+HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, WorkingPair* pair);
 
 /// Bundle adjustment of a head: the poses of many views of it, its shape and its texture are made
 /// to agree with all pictures at once. By turns: texture from the pictures under the poses; poses
@@ -23,8 +37,11 @@ class HeadBundle {
   HeadBundle(const RefinerConfig& config, const StereoRig& rig, double distance_m,
              const HeadGeometry& head, const std::array<ColorModel, 2>& colors);
 
-  /// Takes a pair in which the head is at @p X_CM or near; both eyes must be there. Copies it.
-  void Add(const StereoFrame& frame, const RigidTransform& X_CM);
+  void Add(HeadView view) { views_.push_back(std::move(view)); }
+  void Add(const StereoFrame& frame, const RigidTransform& X_CM) {
+    Add(ViewOf(frame, X_CM, &pair_));
+  }
+  void SetColors(const std::array<ColorModel, 2>& colors) { colors_ = colors; }
   std::size_t num_views() const { return views_.size(); }
   const RigidTransform& pose(std::size_t view) const { return views_[view].X_CM; }
 
@@ -38,15 +55,13 @@ class HeadBundle {
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
 
+  /// Moves the head's frame on it: poses and shape are told from M afterwards.
+  void MoveFrame(const RigidTransform& X_MN);
+
   /// The head as it is now, with its texture under the poses as they are now.
   HeadGeometry Enrolled();
 
  private:
-  struct View {
-    std::array<std::vector<std::uint8_t>, 2> pixels;
-    std::array<ImageView, 2> pictures;
-    RigidTransform X_CM;
-  };
   struct Model {
     Model(const RefinerConfig& config, const HeadGeometry& head)
         : prepared(config, head), texture(prepared.face) {}
@@ -54,22 +69,26 @@ class HeadBundle {
     FaceTexture texture;
   };
 
-  void Look(const View& view);
+  /// The crop in its place in a picture that shows nothing else; valid until the next call.
+  ImageView Unfold(const HeadView::Crop& crop, std::size_t eye);
+  void Look(const HeadView& view);
   void LearnTexture();
   Agreement RefinePoses();
-  void AddShape(const View& view, Band band);
-  void AddOutline(const View& view);
+  void AddShape(const HeadView& view, Band band);
+  void AddOutline(const HeadView& view);
   double MoveSurface();
+  void RebuildModel();
 
   const RefinerConfig config_;
   const HeadGeometry start_;
   const HeadTable start_table_;
   WorkingPair pair_;
   std::array<ColorModel, 2> colors_;
+  std::array<std::vector<std::uint8_t>, 2> unfolded_;
   std::array<ScoreMap, 2> scores_;
   std::array<BandImages, 2> bands_;
   StereoView view_;
-  std::vector<View> views_;
+  std::vector<HeadView> views_;
   ShapeEquations shape_;
   std::vector<float> displaced_;  // from start_table_, by vertex
   std::unique_ptr<Model> model_;

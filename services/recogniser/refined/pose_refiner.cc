@@ -131,8 +131,8 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     const Band band = i < iterations / 2 && !near ? kCoarseBand : kFineBand;
     if (texture != nullptr) {
       const bool both = view[0].seen() && view[1].seen();
-      const double outline = texture->enrolled() ? config_.outline_weight_enrolled
-                                                 : config_.outline_weight_with_texture;
+      const double outline =
+          texture->fixed() ? config_.outline_weight_enrolled : config_.outline_weight_with_texture;
       AddContours(view, poses, reach, (both ? 1 : kOneEyeOutline) * outline, &equations,
                   &refined.contour);
       if (i == 0) {

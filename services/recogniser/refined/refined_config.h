@@ -62,6 +62,7 @@ struct HeadChoice {
     a->Visit("scale", &scale, InRange(1e-9, 1e9));
     a->Visit("y_up", &y_up);
     a->Visit("origin_m", &origin_m);
+    a->Visit("save", &save);
   }
   /// adult: the generic one. ellipsoid, sphere: the published estimator's sizes (head.*), coarser.
   std::string shape{"adult"};
@@ -72,6 +73,8 @@ struct HeadChoice {
   /// Of a mesh: origin of the frame that poses are reported in, in the scaled file's own axes.
   /// Empty: the generic adult's, from the eyes.
   std::vector<double> origin_m;
+  /// Where a head is written as head.yaml whenever it was learned from more views; empty: nowhere.
+  std::string save;
 };
 
 /// All that the refined estimator can be set to.
@@ -84,6 +87,7 @@ struct RefinedConfig {
     a->Visit("search_starts", &search_starts, InRange(1, 20));
     a->Visit("iterations", &iterations, InRange(2, 50));
     a->Visit("search_iterations", &search_iterations, InRange(2, 50));
+    a->Visit("learned_views", &learned_views, InRange(0, 100));
     a->Visit("population", &population);
     a->Visit("refiner", &refiner);
     a->Visit("evidence", &evidence);
@@ -95,6 +99,7 @@ struct RefinedConfig {
   int search_starts{5};         ///< best distinct individuals that are refined then
   int iterations{4};            ///< Gauss-Newton, in a frame with a track
   int search_iterations{8};     ///< Gauss-Newton, of each start
+  int learned_views{20};        ///< of a head, that its shape and looks are learned from; 0: never
   RealGaConfig population;
   RefinerConfig refiner;
   EvidenceConfig evidence;

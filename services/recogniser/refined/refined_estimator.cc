@@ -29,12 +29,14 @@ Matrix6d Covariance(const Matrix6d& information, const Eigen::Vector3d& p_MR_C) 
 }  // namespace
 
 RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head,
-                                   const StereoRig& rig)
+                                   const StereoRig& rig, Background* background)
     : settings_(settings),
       head_(settings.refined.refiner, head),
       X_MR_(MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m)),
       pair_(rig, settings.space.distance()),
       texture_(head_.face),
+      learner_(settings.refined.refiner, rig, settings.space.distance(), head,
+               settings.refined.learned_views, background),
       scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
               ScoreMap(pair_.eye(1).width, pair_.eye(1).height)},
       bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
@@ -67,18 +69,20 @@ void RefinedEstimator::Reset() {
 
 void RefinedEstimator::ForgetFace() {
   texture_.Forget();
+  learned_.reset();
+  learner_.Forget();
   anchor_.Forget();
   strange_in_a_row_ = 0;
 }
 
 void RefinedEstimator::RememberEnrolled() {
-  if (!enrolled_ || texture_.enrolled()) return;
+  if (!enrolled_ || knows_enrolled()) return;
   ForgetFace();
   texture_.Remember(*head_.head.face);
 }
 
 void RefinedEstimator::LookForEnrolled() {
-  if (!enrolled_ || texture_.enrolled() || frames_ % kEnrolledEvery != 0) return;
+  if (!enrolled_ || knows_enrolled() || frames_ % kEnrolledEvery != 0) return;
   const Candidate known =
       RefineFrom(candidate_.refined.X_CM, &*enrolled_, settings_.refined.search_iterations, 7);
   if (!HasLooks(known, settings_.refined.evidence.enrolled_texture_ncc)) return;
@@ -153,8 +157,8 @@ RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X
                                                          const FaceTexture* texture, int iterations,
                                                          int reach_px) {
   Candidate candidate;
-  candidate.refined = head_.refiner.Refine(view_, X_CM, texture, iterations, reach_px);
-  candidate.score = head_.fitness.Evaluate(view_, candidate.refined.X_CM);
+  candidate.refined = head().refiner.Refine(view_, X_CM, texture, iterations, reach_px);
+  candidate.score = head().fitness.Evaluate(view_, candidate.refined.X_CM);
   return candidate;
 }
 
@@ -167,7 +171,7 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   estimate_.evaluations += 1;
   const auto fitness = [&](const Vector6d& phi) {
     ++estimate_.evaluations;
-    return head_.coarse_fitness.Evaluate(view_, TransformFromPhi(phi)).total();
+    return head().coarse_fitness.Evaluate(view_, TransformFromPhi(phi)).total();
   };
   if (settings_.refined.track_evaluations == 0) return best;
   population_.Evaluate(fitness);
@@ -244,68 +248,6 @@ void RefinedEstimator::Judge(bool good) {
   }
 }
 
-void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!view_[i].seen() || !scores_[i].has_color()) continue;
-    const EyePose pose(pair_.eye(i), X_CM);
-    const EyeGeometry& g = pair_.eye(i);
-    const ImageView& picture = *pictures_[i];
-    const int red = picture.format == PixelFormat::kBgr ? 2 : 0;
-    const auto bin = [&](const Eigen::Vector3f& p_M) {
-      const Eigen::Vector3f p = pose.InEye(p_M);
-      if (p.z() < 0.1f) return -1;
-      const int u = static_cast<int>(std::lround(g.cx + g.fx * p.x() / p.z()));
-      const int v = static_cast<int>(std::lround(g.cy + g.fy * p.y() / p.z()));
-      if (u < 0 || v < 0 || u >= g.width || v >= g.height) return -1;
-      const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
-      return ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]);
-    };
-    counts_.Clear();
-    for (std::size_t k = 0; k < head_.mesh.vertices.size(); ++k) {
-      const Eigen::Vector3f view = head_.mesh.vertices[k] - pose.p_ME;
-      const float facing = -head_.mesh.normals[k].dot(view) / view.norm();
-      if (facing > 0.3f && head_.mesh.coloured[k]) {
-        const int b = bin(head_.mesh.vertices[k]);
-        if (b >= 0)
-          counts_.Add(head_.mesh.parts[k] == HeadPart::kHair ? kHairColor : kSkinColor, b);
-      } else if (std::abs(facing) < 0.2f && head_.mesh.contour_weights[k] > 0) {
-        for (const float beyond : {0.014f, 0.024f, 0.036f}) {
-          const int b = bin(head_.mesh.vertices[k] + beyond * head_.mesh.normals[k]);
-          if (b >= 0) counts_.Add(kSurroundings, b);
-        }
-      }
-    }
-    Random random(static_cast<std::uint64_t>(frames_));
-    for (int k = 0; k < 300; ++k) {
-      const int v = random.Index(picture.height), u = random.Index(picture.width);
-      const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
-      counts_.Add(kSurroundings, ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]), 0.3f);
-    }
-    colors_[i].Learn(&counts_);
-  }
-}
-
-void RefinedEstimator::Learn() {
-  if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
-  if (estimate_.status != TrackStatus::kTracking || texture_.enrolled()) return;
-  for (const Band band : {kFineBand, kCoarseBand}) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (view_[i].seen())
-        texture_.Learn(band,
-                       head_.refiner.Sample(view_, i, candidate_.refined.X_CM, band, texture_));
-    }
-  }
-}
-
-// The frame of a learned face goes where all views' generic models agree best.
-void RefinedEstimator::MoveAnchor() {
-  RigidTransform& X_CM = candidate_.refined.X_CM;
-  anchor_.Add(TowardsCamera(X_CM), head_.refiner.Generic(view_, X_CM));
-  const RigidTransform X_MN = anchor_.Correct();
-  X_CM = X_CM * X_MN;
-  texture_.Move(X_MN.inverse());
-}
-
 // The search space moves with a tracked head; a lost one is looked for where the configuration puts
 // it and round its last place by turns.
 void RefinedEstimator::FollowHead() {
@@ -333,6 +275,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   bool good = false;
   if (tracked) {
     timer->Enter(Stage::kRefinement);
+    TakeLearned();
     candidate_ = Track();
     good = one_eye_in_a_row_ <= e.one_eye_frames &&
            (texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_));
@@ -360,7 +303,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   timer->Enter(Stage::kOther);
   Judge(good);
   if (good && BothEyes()) LookForEnrolled();
-  if (good && BothEyes() && texture_.learned() && !texture_.enrolled()) MoveAnchor();
+  if (good && BothEyes() && texture_.learned() && !texture_.fixed()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   FollowHead();
   estimate_.X_CM = *X_CM_ * X_MR_;
@@ -369,7 +312,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   estimate_.covariance =
       Covariance(candidate_.refined.information, X_CM_->linear() * X_MR_.translation());
   total_generations_ += estimate_.generations;
-  if (good && BothEyes()) Learn();  // one eye's depth is no master
+  if (good && BothEyes()) Learn(frame);  // one eye's depth is no master
   ++frames_;
   return estimate_;
 }

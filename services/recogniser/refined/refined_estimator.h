@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "services/recogniser/refined/color_model.h"
 #include "services/recogniser/refined/head_anchor.h"
 #include "services/recogniser/refined/head_geometry.h"
+#include "services/recogniser/refined/head_learner.h"
 #include "services/recogniser/refined/prepared_head.h"
 #include "services/recogniser/refined/refined_config.h"
 #include "services/recogniser/refined/working_pair.h"
@@ -21,7 +23,9 @@ namespace visavis {
 /// by Gauss-Newton over contours, the face's pattern, learned texture and left-right agreement.
 class RefinedEstimator final : public Estimator {
  public:
-  RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head, const StereoRig& rig);
+  /// @p background: where heads are learned; aliased, null: within a frame.
+  RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head, const StereoRig& rig,
+                   Background* background = nullptr);
 
   const Estimate& Process(const StereoFrame& frame, const CameraStep& step,
                           StageTimer* timer) override;
@@ -30,6 +34,11 @@ class RefinedEstimator final : public Estimator {
   void SetSearchSpace(const SearchSpace& space) override;
   const std::array<ColorModel, 2>& colors() const { return colors_; }
   const FaceTexture& texture() const { return texture_; }
+  /// Whether the face that is looked for is the enrolled one.
+  bool knows_enrolled() const { return enrolled_ && texture_.fixed() && !learned_; }
+  std::pair<int, const HeadGeometry*> learned_head() const override {
+    return {learned_heads_, learned_ ? &learned_->head : nullptr};
+  }
   /// In M (see HeadGeometry), while the poses of estimates and settings are those of R.
   const std::vector<Individual>& population() const override { return population_.individuals(); }
   std::int64_t total_generations() const override { return total_generations_; }
@@ -85,7 +94,7 @@ class RefinedEstimator final : public Estimator {
   bool IsKnownFace(const Candidate& candidate, double least_texture_ncc) const;
   double FindTextureNcc() const {
     const EvidenceConfig& e = settings_.refined.evidence;
-    return texture_.enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc;
+    return knows_enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc;
   }
   /// What the face of the texture that @p candidate was refined with must show.
   bool HasLooks(const Candidate& candidate, double least_texture_ncc) const;
@@ -94,16 +103,22 @@ class RefinedEstimator final : public Estimator {
   SearchSpace InM(SearchSpace space) const;
   bool IsNewFace();
   void Judge(bool good);
-  void Learn();
+  void Learn(const StereoFrame& frame);
+  void TakeLearned();
+  PreparedHead& head() { return learned_ ? *learned_ : head_; }
+  const PreparedHead& head() const { return learned_ ? *learned_ : head_; }
   void LearnColors(const RigidTransform& X_CM);
   void MoveAnchor();
 
   RefinedSettings settings_;
-  PreparedHead head_;
-  const RigidTransform X_MR_;  ///< the frame that poses are reported in
+  PreparedHead head_;                      ///< that was looked for first
+  std::unique_ptr<PreparedHead> learned_;  ///< in its place, once it was learned
+  const RigidTransform X_MR_;              ///< the frame that poses are reported in
   WorkingPair pair_;
   FaceTexture texture_;
   std::optional<FaceTexture> enrolled_;
+  HeadLearner learner_;
+  int learned_heads_{0};
   HeadAnchor anchor_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
   std::array<bool, 2> colors_started_{};

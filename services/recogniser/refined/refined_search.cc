@@ -31,20 +31,20 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
   const auto unless_hopeless = [&](const Vector6d& phi, const auto& evaluate) {
     if (WasRejected(phi)) return 2 * kHopeless;
     const RigidTransform X = TransformFromPhi(phi);
-    const double glance = head_.coarse_fitness.GlanceAtSkin(view_, X);
+    const double glance = head().coarse_fitness.GlanceAtSkin(view_, X);
     if (glance < kLeastGlance) return kHopeless + glance;
     ++estimate_.evaluations;
     return evaluate(X);
   };
   const auto fitness = [&](const Vector6d& phi) {
     return unless_hopeless(phi, [&](const RigidTransform& X) {
-      return head_.coarse_fitness.Evaluate(view_, X).total();
+      return head().coarse_fitness.Evaluate(view_, X).total();
     });
   };
   // A shot is taken in only where it beats the worst.
   const auto shot_fitness = [&](const Vector6d& phi) {
     return unless_hopeless(phi, [&](const RigidTransform& X) {
-      return head_.coarse_fitness.TotalIfWorth(view_, X, population_.individuals().back().fitness);
+      return head().coarse_fitness.TotalIfWorth(view_, X, population_.individuals().back().fitness);
     });
   };
   population_.Evaluate(fitness);

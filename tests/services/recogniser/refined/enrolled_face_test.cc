@@ -72,7 +72,7 @@ class EnrolledFaceTest : public ::testing::Test {
     See(kPlace, Stranger);
     for (int i = 1; i < 20; ++i) SeeAgain();
     ASSERT_EQ(SeeAgain().status, TrackStatus::kTracking);
-    ASSERT_FALSE(estimator_.texture().enrolled());
+    ASSERT_FALSE(estimator_.knows_enrolled());
   }
 
   MeshScene scene_;
@@ -93,7 +93,7 @@ TEST_F(EnrolledFaceTest, IsTrackedFromTheFirstFrameAndNeitherItsLooksNorItsFrame
     EXPECT_LT(error.position.norm(), 0.0015) << i;
     EXPECT_LT(error.total_angle, 0.02) << i;
   }
-  EXPECT_TRUE(estimator_.texture().enrolled());
+  EXPECT_TRUE(estimator_.knows_enrolled());
   const LearnedFace now = estimator_.texture().Learned();
   EXPECT_EQ(now.points, head_.face->points);
   EXPECT_EQ(now.normals, head_.face->normals);
@@ -106,11 +106,11 @@ TEST_F(EnrolledFaceTest, AStrangerIsTrackedOnceSeenLongEnoughAndIsAFaceOfItsOwn)
   scene_.Show(TransformFromPhi(kPlace), Stranger);
   for (int i = 1; i < strange_frames; ++i) {
     EXPECT_EQ(SeeAgain().status, TrackStatus::kLost) << i;
-    EXPECT_TRUE(estimator_.texture().enrolled()) << i;
+    EXPECT_TRUE(estimator_.knows_enrolled()) << i;
   }
   for (int i = 0; i < 10; ++i) {
     EXPECT_EQ(SeeAgain().status, TrackStatus::kTracking) << i;
-    EXPECT_FALSE(estimator_.texture().enrolled()) << i;
+    EXPECT_FALSE(estimator_.knows_enrolled()) << i;
   }
   EXPECT_TRUE(estimator_.texture().learned());
 }
@@ -119,8 +119,8 @@ TEST_F(EnrolledFaceTest, AnEnrolledFaceThatComesBackAfterAStrangerIsRecognised) 
   MeetStranger();
   const int most = settings_.refined.evidence.strange_frames + 5;
   See(kPlace, FeaturedHead);
-  for (int i = 1; i < most && !estimator_.texture().enrolled(); ++i) SeeAgain();
-  EXPECT_TRUE(estimator_.texture().enrolled());
+  for (int i = 1; i < most && !estimator_.knows_enrolled(); ++i) SeeAgain();
+  EXPECT_TRUE(estimator_.knows_enrolled());
   EXPECT_EQ(estimator_.texture().Learned().value, head_.face->value);
   const Estimate& estimate = See(kPlace, FeaturedHead);
   EXPECT_EQ(estimate.status, TrackStatus::kTracking);
@@ -130,7 +130,7 @@ TEST_F(EnrolledFaceTest, AnEnrolledFaceThatComesBackAfterAStrangerIsRecognised) 
 TEST_F(EnrolledFaceTest, ResetBringsTheEnrolledFaceBack) {
   MeetStranger();
   estimator_.Reset();
-  EXPECT_TRUE(estimator_.texture().enrolled());
+  EXPECT_TRUE(estimator_.knows_enrolled());
   EXPECT_EQ(estimator_.texture().Learned().points, head_.face->points);
   EXPECT_EQ(See(kPlace, FeaturedHead).status, TrackStatus::kTracking);
 }

@@ -190,7 +190,7 @@ TEST(FaceTextureTest, WhatWasLearnedHoldsThePointsSeenAndTheirBrightnessInBothBa
     EXPECT_NEAR(face.value[kFineBand][i], fine[2 * i + 1], 1e-5);
     EXPECT_NEAR(face.value[kCoarseBand][i], coarse[2 * i + 1], 1e-5);
   }
-  EXPECT_FALSE(texture.enrolled());
+  EXPECT_FALSE(texture.fixed());
 }
 
 TEST(FaceTextureTest, AFaceThatIsRememberedIsEnrolledAndGivenBackAsItWas) {
@@ -198,7 +198,7 @@ TEST(FaceTextureTest, AFaceThatIsRememberedIsEnrolledAndGivenBackAsItWas) {
   FaceTexture texture(Face());
   texture.Learn(kFineBand, SamplesOf(RandomValues(3)));  // of somebody else: gone
   texture.Remember(face);
-  EXPECT_TRUE(texture.enrolled());
+  EXPECT_TRUE(texture.fixed());
   EXPECT_TRUE(texture.learned());
   const LearnedFace again = texture.Learned();
   EXPECT_EQ(again.points, face.points);
@@ -222,7 +222,7 @@ TEST(FaceTextureTest, ForgetEndsAnEnrolment) {
   FaceTexture texture(Face());
   texture.Remember(HalfAFace());
   texture.Forget();
-  EXPECT_FALSE(texture.enrolled());
+  EXPECT_FALSE(texture.fixed());
   EXPECT_FALSE(texture.learned());
   EXPECT_EQ(texture.points().points, Face().points);
   EXPECT_EQ(texture.known().size(), Face().size());

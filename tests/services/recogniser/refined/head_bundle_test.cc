@@ -151,6 +151,33 @@ TEST_F(HeadBundleTest, TheEnrolledHeadHasAFaceOnItsSurfaceThatAViewNotGivenShows
   EXPECT_LT(error.total_angle, 0.01);
 }
 
+TEST_F(HeadBundleTest, AMovedFrameMovesPosesAndShapeAlike) {
+  HeadBundle bundle = Bundle(OtherHead());
+  ShowAll(&bundle);
+  bundle.Round();
+  std::vector<RigidTransform> poses;
+  for (std::size_t i = 0; i < bundle.num_views(); ++i) poses.push_back(bundle.pose(i));
+  const HeadSurface surface_N = bundle.Enrolled().surface;
+  const RigidTransform X_MN =
+      MakeTransform(ExpRotation({0.03, -0.05, 0.04}), Vector3d(0.001, -0.002, 0.003));
+  bundle.MoveFrame(X_MN);
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    EXPECT_TRUE((bundle.pose(i) * X_MN).isApprox(poses[i], 1e-9)) << i;
+  const HeadSurface surface = bundle.Enrolled().surface;
+  double sum = 0, sum_unmoved = 0;
+  const auto square = [](float x) { return static_cast<double>(x * x); };
+  for (const Eigen::Vector3f& p : SharedAdultHead().face.points) {
+    const Eigen::Vector3f on_N = surface_N.Onto(p);
+    const Eigen::Vector3f on_M = (X_MN * on_N.cast<double>()).cast<float>();
+    sum += square(on_M.norm() - surface.Radius(on_M.normalized()));
+    sum_unmoved += square(on_M.norm() - surface_N.Radius(on_M.normalized()));
+  }
+  // The radii are told anew every 7 mm, so that the nose's tip is cut a little.
+  const auto n = static_cast<double>(SharedAdultHead().face.size());
+  EXPECT_LT(std::sqrt(sum / n), 4e-4);
+  EXPECT_GT(std::sqrt(sum_unmoved / n), 1.5e-3);
+}
+
 TEST_F(HeadBundleTest, TheSameViewsGiveTheSameHeadBitForBit) {
   HeadBundle one = Bundle(OtherHead()), other = Bundle(OtherHead());
   for (HeadBundle* bundle : {&one, &other}) {

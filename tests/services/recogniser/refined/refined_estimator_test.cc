@@ -128,9 +128,26 @@ TEST_F(RefinedEstimatorTest, OneEyeAloneIsLostAfterAWhileAndFoundAgainByBoth) {
   ExpectTracked(See(), 4, 2);
 }
 
+TEST_F(RefinedEstimatorTest, AHeadIsLearnedWhileItIsTrackedAndForgottenByReset) {
+  int frames = 0;
+  while (estimator_.learned_head().second == nullptr && frames++ < 80) {
+    SeeHeadAt(kPlace);
+    ExpectTracked(See(), 4, 2);
+  }
+  ASSERT_NE(estimator_.learned_head().second, nullptr);
+  EXPECT_EQ(estimator_.learned_head().first, 1);
+  EXPECT_TRUE(estimator_.learned_head().second->face);
+  for (int i = 0; i < 10; ++i) ExpectTracked(See(), 4, 2);
+  estimator_.Reset();
+  EXPECT_EQ(estimator_.learned_head().second, nullptr);
+  SeeHeadAt(kPlace);
+  ExpectTracked(See(), 4, 2);
+}
+
 TEST_F(RefinedEstimatorTest, ATrackedFrameAllocatesNothing) {
   if (NumMallocs() < 0) GTEST_SKIP() << "mallocs cannot be counted under a sanitizer";
-  for (int i = 0; i < 30; ++i) SeeHeadAt(kPlace);
+  for (int i = 0; i < 80; ++i) SeeHeadAt(kPlace);
+  ASSERT_NE(estimator_.learned_head().second, nullptr);  // else it is still being learned
   const std::int64_t before = NumMallocs();
   for (int i = 0; i < 10; ++i) See();
   EXPECT_EQ(NumMallocs(), before);

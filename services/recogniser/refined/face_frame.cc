@@ -1,0 +1,159 @@
+#include "services/recogniser/refined/face_frame.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "services/recogniser/refined/pose_equations.h"
+
+namespace visavis {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kLevel = 5;
+constexpr double kGenericSpacing_m = 0.003;
+constexpr float kSmooth_m = 0.003f, kNear_m = 0.008f, kLeastWeight = 0.3f;
+constexpr Band kBand = kFineBand;
+
+/// One kind of evidence: what a point may be off, beyond how many times that it hardly counts more,
+/// and how much a point is worth, as its neighbours see the same noise.
+struct Kind {
+  double sigma, limit, weight;
+
+  double Misfit(double off) const {
+    const double misfit = off / sigma;
+    return weight * misfit / std::sqrt(1 + misfit * misfit / (limit * limit));
+  }
+};
+constexpr Kind kMirrorLooks{0.5, 2, 0.3};       ///< of the face's contrast
+constexpr Kind kMirrorShape{0.001, 3, 0.1};     ///< [m]
+constexpr Kind kFeatures{1, 2, 0.1};            ///< of the face's contrast
+constexpr Kind kGenericShape{0.001, 10, 0.02};  ///< [m]
+constexpr double kOrigin_m = 0.001;             ///< the outlines have told it
+
+constexpr int kMostSteps = 12, kPerPoint = 4;
+constexpr double kMoved_m = 5e-5, kTurned_rad = 5e-4;  ///< steps so small change nothing
+constexpr double kProbe_m = 5e-4, kProbe_rad = 6e-3;   ///< of the numeric derivative
+
+}  // namespace
+
+FaceFrame::FaceFrame(const HeadSurface& generic) : generic_(generic), sphere_(kLevel) {
+  const FacePoints dense = FacePointsOf(generic, kGenericSpacing_m);
+  std::vector<Vector3f> points;
+  std::vector<float> values;
+  for (std::size_t i = 0; i < dense.size(); ++i) {
+    if (!dense.has_generic[i]) continue;
+    points.push_back(dense.points[i]);
+    values.push_back(dense.generic[kBand][i]);
+  }
+  generic_looks_ = LooksOf(points, values);
+}
+
+FaceFrame::Looks FaceFrame::LooksOf(const std::vector<Vector3f>& points,
+                                    const std::vector<float>& value) const {
+  const std::vector<Vector3f>& directions = sphere_.vertices();
+  Looks looks;
+  looks.value.assign(directions.size(), 0);
+  looks.known.assign(directions.size(), 0);
+  for (std::size_t v = 0; v < directions.size(); ++v) {
+    float sum = 0, weights = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float along = points[i].dot(directions[v]);
+      const float aside = points[i].squaredNorm() - along * along;
+      if (along < 0 || aside > kNear_m * kNear_m) continue;
+      const float weight = std::exp(-aside / (2 * kSmooth_m * kSmooth_m));
+      sum += weight * value[i];
+      weights += weight;
+    }
+    looks.known[v] = weights > kLeastWeight;
+    if (looks.known[v]) looks.value[v] = sum / weights;
+  }
+  return looks;
+}
+
+bool FaceFrame::At(const Looks& looks, const Vector3f& direction, float* value) const {
+  const Icosphere::Place place = sphere_.Locate(direction);
+  *value = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto v = static_cast<std::size_t>(place.corners[i]);
+    if (!looks.known[v]) return false;
+    *value += place.weights[static_cast<int>(i)] * looks.value[v];
+  }
+  return true;
+}
+
+void FaceFrame::Misfits(const Asked& asked, const RigidTransform& X_MN,
+                        Eigen::VectorXd* misfits) const {
+  const std::vector<Vector3f>& points = asked.face.points;
+  const std::vector<float>& value = asked.face.value[kBand];
+  misfits->setZero(static_cast<Eigen::Index>(points.size()) * kPerPoint);
+  const Eigen::Isometry3f X(X_MN.matrix().cast<float>()), X_back = X.inverse();
+  std::vector<std::pair<std::size_t, float>> features;  // points where the generic face says one
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double* const out = misfits->data() + static_cast<std::ptrdiff_t>(i) * kPerPoint;
+    const Vector3f p_M = X * points[i];
+    const Vector3f mirrored = X_back * Vector3f(-p_M.x(), p_M.y(), p_M.z());
+    const Vector3f towards = mirrored.normalized();
+    const float beyond = mirrored.norm() - asked.surface.Radius(towards);
+    out[0] = kMirrorShape.Misfit(static_cast<double>(beyond));
+    float other;
+    if (At(asked.looks, towards, &other)) {
+      out[1] = kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / asked.contrast);
+    }
+    const float over = p_M.norm() - generic_.Radius(p_M.normalized());
+    out[2] = kGenericShape.Misfit(static_cast<double>(over));
+    if (At(generic_looks_, p_M, &other)) features.emplace_back(i, other);
+  }
+  // value = gain * feature + offset
+  double n = 0, f = 0, v = 0, ff = 0, fv = 0;
+  for (const auto& [i, feature_f] : features) {
+    const double feature = static_cast<double>(feature_f), seen = static_cast<double>(value[i]);
+    n += 1;
+    f += feature;
+    v += seen;
+    ff += feature * feature;
+    fv += feature * seen;
+  }
+  const double gain = (n * fv - f * v) / std::max(n * ff - f * f, 1e-12);
+  const double offset = (v - gain * f) / std::max(n, 1.0);
+  for (const auto& [i, feature] : features) {
+    const double expected = gain * static_cast<double>(feature) + offset;
+    (*misfits)[static_cast<Eigen::Index>(i) * kPerPoint + 3] =
+        kFeatures.Misfit((static_cast<double>(value[i]) - expected) / asked.contrast);
+  }
+}
+
+RigidTransform FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface,
+                               const RigidTransform& X_guess) const {
+  const std::vector<float>& value = face.value[kBand];
+  double sum = 0;
+  for (const float v : value) sum += static_cast<double>(v * v);
+  RigidTransform X_MN = X_guess;
+  if (value.empty() || !(sum > 0)) return X_MN;
+  const Asked asked{face, surface, LooksOf(face.points, value),
+                    std::sqrt(sum / static_cast<double>(value.size()))};
+  Eigen::VectorXd now, more, less;
+  for (int k = 0; k < kMostSteps; ++k) {
+    Misfits(asked, X_MN, &now);
+    Eigen::MatrixXd J(now.size(), 6);
+    for (int i = 0; i < 6; ++i) {
+      Vector6d probe = Vector6d::Zero();
+      probe[i] = i < 3 ? kProbe_m : kProbe_rad;
+      Misfits(asked, Moved(X_MN, probe), &more);
+      Misfits(asked, Moved(X_MN, -probe), &less);
+      J.col(i) = (more - less) / (2 * probe[i]);
+    }
+    Matrix6d H = J.transpose() * J;
+    Vector6d g = -J.transpose() * now;
+    H.diagonal().head<3>().array() += 1 / (kOrigin_m * kOrigin_m);
+    g.head<3>() -= (X_MN.translation() - X_guess.translation()) / (kOrigin_m * kOrigin_m);
+    H.diagonal().tail<3>().array() += 1e-3;
+    const Vector6d step = H.ldlt().solve(g);
+    if (!step.allFinite()) break;
+    X_MN = Moved(X_MN, step);
+    if (step.head<3>().norm() < kMoved_m && step.tail<3>().norm() < kTurned_rad) break;
+  }
+  return X_MN;
+}
+
+}  // namespace visavis

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "common/geometry/rigid_transform.h"
+#include "services/recogniser/refined/face_points.h"
+#include "services/recogniser/refined/icosphere.h"
+#include "services/recogniser/refined/learned_face.h"
+
+namespace visavis {
+
+/// Where the head's frame lies on a face of known shape and looks. Whoever has seen the face from
+/// whatever side finds the same: the frame's plane x = 0 is the plane of symmetry of looks and
+/// shape; how far it nods is told by the features' height and the slope of the generic face.
+class FaceFrame {
+ public:
+  explicit FaceFrame(const HeadSurface& generic);
+
+  /// X_MN of the frame N in which @p face and @p surface are given, from @p X_guess on, of which
+  /// the origin is a measurement too: the outlines have told it.
+  RigidTransform Find(const LearnedFace& face, const HeadSurface& surface,
+                      const RigidTransform& X_guess) const;
+
+ private:
+  /// Brightness of a band by direction; not known where no point is near.
+  struct Looks {
+    std::vector<float> value;
+    std::vector<unsigned char> known;  ///< by vertex of the sphere
+  };
+  struct Asked {
+    const LearnedFace& face;
+    const HeadSurface& surface;
+    Looks looks;
+    double contrast;  ///< rms of the face's brightness
+  };
+
+  Looks LooksOf(const std::vector<Eigen::Vector3f>& points, const std::vector<float>& value) const;
+  bool At(const Looks& looks, const Eigen::Vector3f& direction, float* value) const;
+  /// What speaks against X_MN, each in its standard deviation.
+  void Misfits(const Asked& asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const;
+
+  const HeadSurface generic_;
+  const Icosphere sphere_;
+  Looks generic_looks_;
+};
+
+}  // namespace visavis

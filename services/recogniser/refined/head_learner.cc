@@ -1,0 +1,135 @@
+#include "services/recogniser/refined/head_learner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace visavis {
+namespace {
+
+constexpr double kSameView_rad = 0.05;
+constexpr int kSettled = 5;      ///< frames of a track before its pose is taken
+constexpr int kFirstFrame = 30;  ///< with a track, at which learning begins, if only of one view
+constexpr int kFrames = 15, kFramesPerView = 1;  ///< that learning takes
+constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
+constexpr int kTurns = 2, kRounds = 2;           ///< of the bundle, each turn with a new frame
+
+}  // namespace
+
+struct HeadLearner::Work {
+  explicit Work(const HeadLearner& learner)
+      : config(learner.config_),
+        rig(learner.rig_),
+        distance_m(learner.distance_m_),
+        start(learner.start_) {}
+
+  void Run() {
+    if (!bundle) {
+      finder = std::make_unique<FaceFrame>(start.surface);
+      bundle = std::make_unique<HeadBundle>(config, rig, distance_m, start, colors);
+      for (const HeadView& view : new_views) X_CA.push_back(view.X_CM);
+    }
+    bundle->SetColors(colors);
+    for (HeadView& view : new_views) bundle->Add(std::move(view));
+    new_views.clear();
+    const std::size_t last = bundle->num_views() - 1;
+    const RigidTransform X_CN = bundle->pose(last);
+    for (int turn = 0; turn < kTurns; ++turn) {
+      for (int round = 0; round < kRounds; ++round) bundle->Round();
+      const HeadGeometry head = bundle->Enrolled();
+      bundle->MoveFrame(finder->Find(*head.face, head.surface, Anchor()));
+    }
+    learned.head = std::make_unique<PreparedHead>(config, bundle->Enrolled());
+    learned.X_MN = bundle->pose(last).inverse() * X_CN;
+  }
+
+  /// X_AN: the frame that the first views were told in, from the bundle's.
+  RigidTransform Anchor() const {
+    RigidTransform X_AN = X_CA[0].inverse() * bundle->pose(0);
+    Vector6d sum = Vector6d::Zero();
+    for (std::size_t i = 0; i < X_CA.size(); ++i) {
+      const RigidTransform off = X_CA[i].inverse() * bundle->pose(i) * X_AN.inverse();
+      sum.head<3>() += off.translation();
+      sum.tail<3>() += LogRotation(off.linear());
+    }
+    sum /= static_cast<double>(X_CA.size());
+    return MakeTransform(ExpRotation(sum.tail<3>()), Eigen::Vector3d(sum.head<3>())) * X_AN;
+  }
+
+  const RefinerConfig config;
+  const StereoRig rig;
+  const double distance_m;
+  const HeadGeometry start;
+  std::array<ColorModel, 2> colors;
+  std::vector<HeadView> new_views;
+  std::unique_ptr<FaceFrame> finder;
+  std::unique_ptr<HeadBundle> bundle;
+  std::vector<RigidTransform> X_CA;  ///< of the first views, as they were given
+  Learned learned;
+};
+
+HeadLearner::HeadLearner(const RefinerConfig& config, const StereoRig& rig, double distance_m,
+                         const HeadGeometry& start, int most_views, Background* background)
+    : config_(config),
+      rig_(rig),
+      distance_m_(distance_m),
+      start_(start),
+      pair_(rig, distance_m),
+      most_views_(most_views),
+      background_(background != nullptr ? background : &no_background_) {}
+
+HeadLearner::~HeadLearner() = default;
+
+void HeadLearner::Forget() {
+  work_.reset();  // what is under way keeps its own
+  seen_.clear();
+  new_views_.clear();
+  frames_ = in_a_row_ = learned_views_ = 0;
+  begun_ = -1;
+}
+
+void HeadLearner::Add(const StereoFrame& frame, const RigidTransform& X_CM,
+                      const std::array<ColorModel, 2>& colors) {
+  const auto views = static_cast<int>(seen_.size());
+  if (begun_ >= 0 || views >= most_views_ || ++in_a_row_ < kSettled) return;
+  const Eigen::Vector3d direction = TowardsCamera(X_CM);
+  const bool known = std::any_of(seen_.begin(), seen_.end(), [&](const RigidTransform& X) {
+    return direction.dot(TowardsCamera(X)) > std::cos(kSameView_rad);
+  });
+  if (known) return;
+  new_views_.push_back(ViewOf(frame, X_CM, &pair_));
+  colors_ = colors;
+  seen_.push_back(X_CM);
+}
+
+bool HeadLearner::IsDue() const {
+  const auto views = static_cast<int>(seen_.size());
+  if (views == 0 || views == learned_views_ || frames_ < kFirstFrame) return false;
+  return views >= most_views_ || views >= kGrowth * learned_views_;
+}
+
+HeadLearner::Learned HeadLearner::Step() {
+  ++frames_;
+  if (begun_ < 0) {
+    if (IsDue() && background_->IsFinished()) {
+      begun_ = frames_;
+      if (!work_) work_ = std::make_shared<Work>(*this);
+      work_->new_views = std::move(new_views_);
+      new_views_.clear();
+      work_->colors = colors_;
+      background_->Begin([work = work_] { work->Run(); });
+    }
+    return {};
+  }
+  const int frames = kFrames + kFramesPerView * static_cast<int>(seen_.size());
+  if (frames_ < begun_ + frames || !background_->IsFinished()) return {};
+  begun_ = -1;
+  in_a_row_ = 0;
+  learned_views_ = static_cast<int>(seen_.size());
+  for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = work_->bundle->pose(i);
+  Learned learned = std::move(work_->learned);
+  if (learned_views_ >= most_views_) work_.reset();
+  return learned;
+}
+
+}  // namespace visavis

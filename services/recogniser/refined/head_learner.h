@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "services/recogniser/refined/background.h"
+#include "services/recogniser/refined/color_model.h"
+#include "services/recogniser/refined/face_frame.h"
+#include "services/recogniser/refined/head_bundle.h"
+
+namespace visavis {
+
+/// Learns the shape, the looks and the frame of a head while it is tracked: the views of the first
+/// seconds, one a direction, are bundled beside the frames, anew as soon as half as many have come.
+/// A head learned is there so many frames after its learning was begun, not before: a log played
+/// again gives the same.
+class HeadLearner {
+ public:
+  /// @p background is aliased; null: the learning is done within a frame.
+  HeadLearner(const RefinerConfig& config, const StereoRig& rig, double distance_m,
+              const HeadGeometry& start, int most_views, Background* background);
+  ~HeadLearner();
+
+  /// Another head from here on.
+  void Forget();
+  /// A pair that shows the head at @p X_CM well, in the frame of what was learned last. Takes it if
+  /// it shows a new side.
+  void Add(const StereoFrame& frame, const RigidTransform& X_CM,
+           const std::array<ColorModel, 2>& colors);
+
+  struct Learned {
+    std::unique_ptr<PreparedHead> head;  ///< with its face
+    RigidTransform X_MN;                 ///< of the frame that views were told in before
+  };
+  /// Once a frame with a track: what was learned, where it is time for it; else a null head.
+  Learned Step();
+
+ private:
+  struct Work;  // what the background touches
+
+  bool IsDue() const;
+
+  const RefinerConfig config_;
+  const StereoRig rig_;
+  const double distance_m_;
+  const HeadGeometry start_;
+  WorkingPair pair_;
+  const int most_views_;
+  NoBackground no_background_;
+  Background* const background_;
+  std::vector<RigidTransform> seen_;  ///< X_CM of the views
+  std::vector<HeadView> new_views_;   ///< not bundled yet
+  std::array<ColorModel, 2> colors_;  ///< of the last view
+  int frames_{0}, in_a_row_{0}, learned_views_{0}, begun_{-1};
+  std::shared_ptr<Work> work_;
+};
+
+}  // namespace visavis
