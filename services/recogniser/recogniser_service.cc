@@ -51,6 +51,7 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
     : config_(config),
       context_(context),
       timer_(&MonotonicSeconds),
+      budget_(context.live ? config.refined.budget_ms : 0),
       ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
       feedforward_(ParseFeedforward(config.feedforward)),
       refined_head_(config.RefinedHead()),
@@ -78,12 +79,22 @@ RecogniserService::~RecogniserService() = default;
 void RecogniserService::SetRig(const RigDescription& description) {
   auto preparer = std::make_unique<FramePreparer>(description.rig);
   auto estimator = NewEstimator(estimator_name_, description.rig);
+  TellIfBudgetIsTooSmall(description.rig);
   ego_motion_.SetRig(description);
   preparer_ = std::move(preparer);
   estimator_ = std::move(estimator);
   rig_ = description.rig;
   swap_probe_ = std::make_unique<SwapProbe>([this] { return AnyFaceEstimator(); });
   BeginTrack();
+}
+
+void RecogniserService::TellIfBudgetIsTooSmall(const StereoRig& rig) {
+  if (!budget_.is_limited()) return;
+  RefinedSettings settings = config_.RefinedSettings();
+  settings.start_X_CM = TransformFromPhi(0.5 * (settings.space.min + settings.space.max));
+  RefinedEstimator estimator(settings, refined_head_, rig);
+  budget_.SetGeneration(LeastGenerationMs(rig, &estimator, &timer_));
+  Complain("budget", budget_.complaint());
 }
 
 // Finds whoever is there, in one frame.
@@ -95,6 +106,7 @@ std::unique_ptr<Estimator> RecogniserService::AnyFaceEstimator() const {
   head.face.reset();
   auto estimator = std::make_unique<RefinedEstimator>(settings, head, *rig_);
   if (commanded_space_) estimator->SetSearchSpace(*commanded_space_);
+  estimator->SetEffort(budget_.effort());
   return estimator;
 }
 
@@ -240,6 +252,7 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
       timer_.Enter(Stage::kOther);
       const CameraStep step =
           last_utime_us_ ? ego_motion_.Between(*last_utime_us_, message.utime) : CameraStep{};
+      estimator_->SetEffort(budget_.effort());
       estimate = &estimator_->Process(frame, step, &timer_);
     } catch (const std::exception& e) {  // whatever it is, the pair gets its HEAD_POSE
       refused = e.what();
@@ -247,6 +260,7 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
   }
   TellMissing(message);
   timer_.Enter(Stage::kOther);
+  if (estimate && estimator_name_ == "refined") KeepBudget(*estimate);
   PublishEstimate(message, estimate, received_us);
   if (estimate) {
     last_utime_us_ = message.utime;
@@ -272,6 +286,14 @@ void RecogniserService::LookForSwappedEyes(const images_t& message, bool is_trac
                ? "images of left and right camera are swapped: a head is there only "
                  "when they are exchanged; exchange the cameras or image_types"
                : "");
+}
+
+// By the clock, and therefore live only.
+void RecogniserService::KeepBudget(const Estimate& estimate) {
+  if (!budget_.is_limited()) return;
+  if (estimate.budget_reduced) ++reduced_pairs_;
+  budget_.Took(timer_.TotalMs(), estimate.searched);
+  Complain("budget", budget_.complaint());
 }
 
 // Tells of a condition as long as it holds; it stays the last error.
@@ -358,6 +380,7 @@ void RecogniserService::UpdateStatus() {
   context_.status->SetCounter("pairs_with_stale_right_image", picture_watch_.num_stale_right());
   context_.status->SetCounter("pairs_with_stale_left_image", picture_watch_.num_stale_left());
   context_.status->SetCounter("pairs_with_swapped_images", swapped_pairs_);
+  context_.status->SetCounter("pairs_with_fewer_evaluations", reduced_pairs_);
 }
 
 }  // namespace visavis

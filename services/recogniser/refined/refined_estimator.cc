@@ -98,6 +98,11 @@ SearchSpace RefinedEstimator::InM(SearchSpace space) const {
   return space;
 }
 
+int RefinedEstimator::Lowered(int count, double share, int least) {
+  const double lowered = std::round(share * static_cast<double>(count));
+  return std::max(std::min(count, least), static_cast<int>(lowered));
+}
+
 void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
   if (!settings_.recentre) return;
   centre_ = p_CM;
@@ -170,8 +175,11 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
     return head_.coarse_fitness.Evaluate(view_, TransformFromPhi(phi)).total();
   };
   if (settings_.refined.track_evaluations == 0) return best;
+  const int one_generation = settings_.refined.population.individuals + 2;
+  const int evaluations =
+      Lowered(settings_.refined.track_evaluations, effort_.tracking, one_generation);
   population_.Evaluate(fitness);
-  while (estimate_.evaluations < settings_.refined.track_evaluations) {
+  while (estimate_.evaluations < evaluations) {
     population_.Reproduce(fitness);
     ++estimate_.generations;
   }
@@ -326,6 +334,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   Feedforward(step);
   estimate_.generations = estimate_.evaluations = 0;
   const bool tracked = X_CM_ && bad_in_a_row_ == 0;
+  estimate_.budget_reduced = tracked && effort_.tracking < 1;
   timer->Enter(Stage::kMap);
   TakePictures(frame);
   BuildMaps(tracked ? &*X_CM_ : nullptr);
@@ -341,7 +350,9 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
       BuildMaps(nullptr);
     }
   }
+  estimate_.searched = !good;
   if (!good) {
+    estimate_.budget_reduced |= effort_.searching < 1;
     // A stranger who is gone is forgotten: the enrolled face is waited for.
     if (bad_in_a_row_ == kStrangerGone) RememberEnrolled();
     timer->Enter(Stage::kGeneration);

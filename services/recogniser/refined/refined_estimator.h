@@ -28,6 +28,7 @@ class RefinedEstimator final : public Estimator {
   void Reset() override;
   void SetFeedforward(FeedforwardMode mode) override { settings_.feedforward = mode; }
   void SetSearchSpace(const SearchSpace& space) override;
+  void SetEffort(const Effort& effort) override { effort_ = effort; }
   const std::array<ColorModel, 2>& colors() const { return colors_; }
   const FaceTexture& texture() const { return texture_; }
   /// In M (see HeadGeometry), while the poses of estimates and settings are those of R.
@@ -98,7 +99,11 @@ class RefinedEstimator final : public Estimator {
   void LearnColors(const RigidTransform& X_CM);
   void MoveAnchor();
 
+  /// @p count lowered to @p share of it, not below @p least.
+  static int Lowered(int count, double share, int least);
+
   RefinedSettings settings_;
+  Effort effort_;
   PreparedHead head_;
   const RigidTransform X_MR_;  ///< the frame that poses are reported in
   WorkingPair pair_;

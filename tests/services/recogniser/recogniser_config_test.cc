@@ -88,6 +88,8 @@ TEST(RecogniserConfigTest, BadValuesNameKeyValueAndRule) {
       {"published.color.hair_min_p=300", "published.color.hair_min_p", "must be 0 to 255"},
       {"published.fitness.use_site=2", "published.fitness.use_site", "true or false"},
       {"published.track.confirm_frames=0", "published.track.confirm_frames", "must be 1 to"},
+      {"refined.budget_ms=-1", "refined.budget_ms", "must be 0 to 10000 ms"},
+      {"refined.track_evaluations=31", "refined.track_evaluations", "must be 32 or more"},
       {"refined.head.shape=cube", "refined.head.shape", "must be one of adult ellipsoid sphere"},
       {"refined.head.file=/nowhere/head.obj", "refined.head.file", "/nowhere/head.obj"},
       {"refined.head.scale=0", "refined.head.scale", "must be"},
