@@ -50,6 +50,7 @@ visavis::RefinedSettings RecogniserConfig::RefinedSettings() const {
   settings.space = SearchSpace::FromConfig(search);
   settings.recentre = Recentres(search);
   settings.start_X_CM = start.Pose();
+  settings.nearest_to_m = search.NearestTo();
   settings.feedforward = ParseFeedforward(feedforward);
   settings.seed = static_cast<std::uint64_t>(seed);
   return settings;

@@ -113,7 +113,8 @@ struct RefinedSettings {
   SearchSpace space;
   bool recentre{true};
   FeedforwardMode feedforward{FeedforwardMode::kExact};
-  std::optional<RigidTransform> start_X_CM;  ///< where the head is, if it is known
+  std::optional<RigidTransform> start_X_CM;     ///< where the head is, if it is known
+  std::optional<Eigen::Vector3d> nearest_to_m;  ///< C: which face to take at the start
   std::uint64_t seed{1};
 };
 

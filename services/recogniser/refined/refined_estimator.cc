@@ -357,7 +357,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     if (bad_in_a_row_ == kStrangerGone) RememberEnrolled();
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
-    candidate_ = Search();
+    candidate_ = SearchNearest();
     // One eye can keep a track for a while, not begin one: its depth is a guess.
     const bool known = IsKnownFace(candidate_, FindTextureNcc());
     if (known || !BothEyes()) strange_in_a_row_ = 0;

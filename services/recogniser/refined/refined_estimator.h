@@ -68,6 +68,8 @@ class RefinedEstimator final : public Estimator {
                        int reach_px);
   Candidate Track();
   Candidate Search();
+  /// The same; where several faces are in view and none is known, the one that is wanted.
+  Candidate SearchNearest();
   bool WasRejected(const Vector6d& phi) const;
   void RejectPlaces();
   std::vector<RigidTransform> DistinctPlaces() const;

@@ -19,7 +19,8 @@ constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;   ///< best places that are verified
 constexpr int kVerifyRounds = 2;
-constexpr double kLittleEffort = 0.3;                       ///< less: no turned starts
+constexpr int kMostFaces = 4;          ///< that are told apart by search.nearest_to
+constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
 constexpr int kFewestShots = 100, kFewestEvaluations = 20;  ///< where the clock lowers them
 
 bool AreOnePlace(const RigidTransform& a, const RigidTransform& b) {
@@ -63,6 +64,34 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
   RefineStarts(DistinctPlaces());
   if (const auto known = KnownAmongCandidates()) return *known;
   return Recognise(BestVerified());
+}
+
+// Each face found is put aside until no other is found. The learned colours and the maps are those
+// of the face taken.
+RefinedEstimator::Candidate RefinedEstimator::SearchNearest() {
+  Candidate found = Search();
+  if (!settings_.nearest_to_m || texture_.learned()) return found;
+  const auto distance = [&](const Candidate& candidate) {
+    return (candidate.refined.X_CM * X_MR_.translation() - *settings_.nearest_to_m).norm();
+  };
+  const auto colors_at_start = colors_before_;
+  auto colors_nearest = colors_;
+  Candidate nearest = found;
+  for (int k = 1; k < kMostFaces && IsFace(found); ++k) {
+    rejected_.push_back(found.refined.X_CM.translation());
+    colors_ = colors_at_start;
+    BuildMaps(nullptr);
+    population_.Restart();
+    found = Search();
+    if (!IsFace(found) || distance(found) >= distance(nearest)) continue;
+    nearest = found;
+    colors_nearest = colors_;
+  }
+  if (!IsFace(nearest)) return nearest;
+  colors_before_ = colors_at_start;
+  colors_ = colors_nearest;
+  BuildMaps(&nearest.refined.X_CM);
+  return nearest;
 }
 
 bool RefinedEstimator::WasRejected(const Vector6d& phi) const {

@@ -79,6 +79,8 @@ TEST(RecogniserConfigTest, BadValuesNameKeyValueAndRule) {
       {"population_every=-1", "population_every", "must be 0 to"},
       {"search.preset=tiny", "search.preset", "must be one of"},
       {"search.max_x_mm=-500", "search.max_x_mm", "must exceed search.min_x_mm"},
+      {"search.nearest_to=[1, 2]", "search.nearest_to", "must be x y z"},
+      {"search.nearest_to=[100, 0, 1000]", "search.nearest_to", "must each be -10 to 10 m"},
       {"start.phi_mm_deg=[1, 2, 3]", "start.phi_mm_deg", "must be six"},
       {"start.phi_mm_deg=here", "start.phi_mm_deg", "list"},
       {"start.spread_mm=-1", "start.spread_mm", "must be 0 to 500 mm"},
