@@ -128,6 +128,7 @@ std::unique_ptr<Estimator> RecogniserService::NewEstimator(const std::string& na
 void RecogniserService::BeginTrack() {
   picture_watch_.Forget();
   if (swap_probe_) swap_probe_->Forget();
+  for (const char* name : {"stale_images", "swapped_eyes"}) Complain(name, "");
   last_utime_us_.reset();
   head_was_tracked_ = false;
 }
