@@ -9,22 +9,7 @@ namespace {
 constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the enrolled face
 constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
-constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
-constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
-
-/// From the normal equations, and what they cannot know: the head is not shaped as the model. The
-/// head frame's constant offset is a matter of definition and not in it. @p p_MR_C: R's origin from
-/// M's, in C; its position hangs on the rotation with that lever.
-Matrix6d Covariance(const Matrix6d& information, const Eigen::Vector3d& p_MR_C) {
-  Matrix6d covariance = information.inverse();
-  covariance.diagonal().head<3>().array() += kShape_m * kShape_m;
-  covariance.diagonal().tail<3>().array() += kShape_rad * kShape_rad;
-  Matrix6d lever = Matrix6d::Identity();
-  lever.topRightCorner<3, 3>() << 0, p_MR_C.z(), -p_MR_C.y(),  //
-      -p_MR_C.z(), 0, p_MR_C.x(),                              //
-      p_MR_C.y(), -p_MR_C.x(), 0;
-  return lever * covariance * lever.transpose();
-}
+constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
 
 }  // namespace
 
@@ -68,6 +53,7 @@ void RefinedEstimator::Reset() {
 void RefinedEstimator::ForgetFace() {
   texture_.Forget();
   anchor_.Forget();
+  covariance_.Forget();
   strange_in_a_row_ = 0;
 }
 
@@ -295,7 +281,9 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
 
 void RefinedEstimator::Learn() {
   if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
-  if (estimate_.status != TrackStatus::kTracking || texture_.enrolled()) return;
+  if (estimate_.status != TrackStatus::kTracking) return;
+  covariance_.Learn(TowardsCamera(candidate_.refined.X_CM));
+  if (texture_.enrolled()) return;
   for (const Band band : {kFineBand, kCoarseBand}) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (view_[i].seen())
@@ -377,8 +365,11 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   estimate_.X_CM = *X_CM_ * X_MR_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
+  const Matrix6d& information = candidate_.refined.information;
   estimate_.covariance =
-      Covariance(candidate_.refined.information, X_CM_->linear() * X_MR_.translation());
+      WithLever(good && BothEyes() ? covariance_.OfLearnedFace(information, TowardsCamera(*X_CM_))
+                                   : PoseCovariance::OfAnyFace(information),
+                X_CM_->linear() * X_MR_.translation());
   total_generations_ += estimate_.generations;
   if (good && BothEyes()) Learn();  // one eye's depth is no master
   ++frames_;

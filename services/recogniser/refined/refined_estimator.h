@@ -11,6 +11,7 @@
 #include "services/recogniser/refined/color_model.h"
 #include "services/recogniser/refined/head_anchor.h"
 #include "services/recogniser/refined/head_geometry.h"
+#include "services/recogniser/refined/pose_covariance.h"
 #include "services/recogniser/refined/prepared_head.h"
 #include "services/recogniser/refined/refined_config.h"
 #include "services/recogniser/refined/working_pair.h"
@@ -112,6 +113,7 @@ class RefinedEstimator final : public Estimator {
   FaceTexture texture_;
   std::optional<FaceTexture> enrolled_;
   HeadAnchor anchor_;
+  PoseCovariance covariance_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
   std::array<bool, 2> colors_started_{};
   ColorModel::Counts counts_;
