@@ -26,6 +26,9 @@ class LogBus final : public Bus {
   /// @p writer may be null: what is published is dropped. Both are aliased.
   LogBus(const std::string& prefix, const Clock* clock, EventLogWriter* writer);
 
+  /// From now on what is published goes there. Aliased.
+  void SetWriter(EventLogWriter* writer) { writer_ = writer; }
+
   void SubscribeAll(BytesHandler handler, int queue_capacity) override;
 
   /// Hands one event to those who subscribed to its channel. @return whether anyone did.
@@ -37,7 +40,7 @@ class LogBus final : public Bus {
                       int queue_capacity) override;
 
   const Clock& clock_;
-  EventLogWriter* const writer_;
+  EventLogWriter* writer_;
   std::map<std::string, std::vector<BytesHandler>> handlers_;
   std::vector<BytesHandler> all_handlers_;
 };

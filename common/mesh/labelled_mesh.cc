@@ -9,6 +9,8 @@
 namespace visavis {
 namespace {
 
+constexpr float kFarthest_m = 1e4f;
+
 [[noreturn]] void Refuse(const std::string& filename, const std::string& reason) {
   throw std::invalid_argument(filename + ": " + reason);
 }
@@ -37,9 +39,9 @@ void ReadTriangles(const std::string& filename, const aiMesh& from, const MeshFi
         options.scale * Eigen::Vector3d(static_cast<double>(p.x), static_cast<double>(p.y),
                                         static_cast<double>(p.z));
     part->vertices.push_back((scaled - options.p_origin_m).cwiseProduct(axes).cast<float>());
-    if (!part->vertices.back().allFinite()) {
+    if (!(part->vertices.back().cwiseAbs().maxCoeff() <= kFarthest_m)) {
       Refuse(filename, "mesh '" + part->name + "': vertex " + std::to_string(k) +
-                           ": must have finite coordinates");
+                           ": must have finite coordinates within 10000 m; is the scale right?");
     }
   }
   for (unsigned k = 0; k < from.mNumFaces; ++k) {

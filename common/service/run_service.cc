@@ -19,24 +19,30 @@ void TellStatusOfRejects(Bus* bus, StatusReporter* status, const Clock* clock) {
   });
 }
 
+void RequireAnotherFile(const ServiceFlags& flags) {
+  if (flags.record.empty() || flags.replay.empty() || !std::filesystem::exists(flags.record) ||
+      !std::filesystem::equivalent(flags.replay, flags.record)) {
+    return;
+  }
+  throw std::invalid_argument("--record " + flags.record + ": must be another file than --replay");
+}
+
 int RunOffline(const ServiceTraits& traits, const ServiceFlags& flags, const StopSignal& stop,
                const ServiceFactory& make_service, Replay::Filter filter) {
   ManualClock clock;
   StatusReporter status(traits.name, kVersion);
   std::optional<EventLogReader> reader;
   if (!flags.replay.empty()) reader.emplace(flags.replay);
+  RequireAnotherFile(flags);
   std::optional<EventLogWriter> writer;
-  if (!flags.record.empty()) {
-    if (!flags.replay.empty() && std::filesystem::exists(flags.record) &&
-        std::filesystem::equivalent(flags.replay, flags.record)) {
-      throw std::invalid_argument("--record " + flags.record +
-                                  ": must be another file than --replay");
-    }
-    writer.emplace(flags.record, EventLogWriter::Mode::kReplace);
-  }
-  LogBus bus(flags.prefix, &clock, writer ? &*writer : nullptr);
+  LogBus bus(flags.prefix, &clock, nullptr);
   TellStatusOfRejects(&bus, &status, &clock);
   const auto service = make_service({&bus, &clock, &status, false});
+  // Only now: a configuration that is refused must not cost an earlier log.
+  if (!flags.record.empty()) {
+    writer.emplace(flags.record, EventLogWriter::Mode::kReplace);
+    bus.SetWriter(&*writer);
+  }
   if (reader) {
     filter.keep_images = flags.keep_images;
     Replay(service.get(), &bus, &clock, &status, writer ? &*writer : nullptr)

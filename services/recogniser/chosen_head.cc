@@ -1,5 +1,6 @@
 #include "services/recogniser/chosen_head.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <stdexcept>
@@ -58,6 +59,13 @@ HeadGeometry EllipsoidHead(const Vector3d& axes_mm, const HeadModelConfig& sizes
   const Icosphere sphere(kLevel);
   for (const Eigen::Vector3f& d : sphere.vertices()) {
     table.radii_m.push_back(RadiusOf(axes, head.p_MR_m, d.cast<double>()));
+  }
+  const float least = *std::min_element(table.radii_m.begin(), table.radii_m.end());
+  if (!(least >= HeadTable::kMinRadius_m)) {
+    throw FieldError("refined.head.shape", "ellipsoid or sphere",
+                     "must reach " + std::to_string(std::lround(1e3 * HeadTable::kMinRadius_m)) +
+                         " mm from the point behind its eyes to all sides: head.radius_mm, "
+                         "head.semi_axis_*_mm are too small");
   }
   head.surface = HeadSurface(shape, table);
   return head;

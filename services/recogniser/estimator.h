@@ -32,6 +32,12 @@ struct CameraStep {
   CameraTwist twist_1;  ///< of C1, for kJacobian
 };
 
+/// Shares of the configured evaluations that a frame with a track, and one in which the head is
+/// searched, may run: in (0, 1]. At least one generation runs.
+struct Effort {
+  double tracking{1}, searching{1};
+};
+
 enum class TrackStatus { kSearching, kTracking, kLost };
 
 struct Estimate {
@@ -41,7 +47,8 @@ struct Estimate {
   Fitness fitness;                                        ///< of X_CM
   int generations{0}, evaluations{0};                     ///< run on this frame
   FeedforwardMode feedforward{FeedforwardMode::kNone};    ///< what carried the population here
-  bool budget_reduced{false};                             ///< the clock lowered the evaluations
+  bool searched{false};        ///< everywhere: many more evaluations than with a track
+  bool budget_reduced{false};  ///< fewer evaluations than configured: SetEffort()
 };
 
 /// Finds the head, frame after frame. One data flow: frame and camera step in, estimate out.
@@ -59,6 +66,8 @@ class Estimator {
 
   virtual void SetFeedforward(FeedforwardMode mode) = 0;
   virtual void SetSearchSpace(const SearchSpace& space) = 0;
+  /// From the next frame on; nothing where the evaluations are fixed.
+  virtual void SetEffort(const Effort&) {}
 
   /// The head as it was last learned from many views, and how many have been so far; null: none is
   /// in use. Valid until the next call.

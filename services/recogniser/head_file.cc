@@ -114,6 +114,30 @@ HeadGeometry LoadHeadFile(const std::string& filename) {
   return head;
 }
 
+namespace {
+
+/// Holds values against the rules that the reader holds them against.
+class RuleChecker {
+ public:
+  template <typename T>
+  void Visit(const std::string&, T*) {}
+  void Visit(const std::string& key, double* value, const Rule<double>& rule) {
+    if (!rule.holds(*value)) throw FieldError(key, std::to_string(*value), rule.text);
+  }
+};
+
+void RequireReadable(const std::string& filename, HeadFile file) {
+  try {
+    RuleChecker checker;
+    file.Serialize(&checker);
+    file.ValidateOrThrow();
+  } catch (const FieldError& e) {
+    throw std::invalid_argument(filename + ": is not written: " + e.what());
+  }
+}
+
+}  // namespace
+
 void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int level) {
   const HeadShape& shape = head.surface.shape();
   HeadFile file;
@@ -135,6 +159,7 @@ void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int lev
       file.face_coarse.push_back(Thousandths(head.face->value[kCoarseBand][i]));
     }
   }
+  RequireReadable(filename, file);
   std::ofstream out(filename);
   out << "# A head for visavis-recogniser: refined.head.file. Radii by direction, frame M, mm.\n"
       << DumpConfig(file) << "\n";

@@ -44,7 +44,8 @@ struct HeadFile {
 HeadGeometry LoadHeadFile(const std::string& filename);
 
 /// What LoadHeadFile reads back: @p head at the icosphere's @p level (4: 2562 radii), to 0.001 mm.
-/// @throws std::runtime_error naming a file that cannot be written.
+/// @throws std::invalid_argument naming file, key, value and rule where LoadHeadFile would refuse
+/// it, and the file is not touched; std::runtime_error naming a file that cannot be written.
 void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int level = 4);
 
 }  // namespace visavis

@@ -6,32 +6,46 @@
 #include "common/bus/channels.h"
 #include "common/convert/pose_message.h"
 #include "common/convert/rig_message.h"
+#include "common/rigs/rig_file.h"
 
 namespace visavis {
 namespace {
 
 template <typename Message>
-bool Decode(const LogEvent& event, const char* channel, Message* message) {
+bool Decode(const LogEvent& event, const std::string& channel, Message* message) {
   const int size = static_cast<int>(event.data.size());
   return event.channel == channel && message->decode(event.data.data(), 0, size) == size;
 }
 
 }  // namespace
 
-LogPlayer::LogPlayer(const std::string& path) : reader_(path) { ReadRig(); }
+LogPlayer::LogPlayer(const std::string& path, const RecogniserConfig& config)
+    : channels_(config.channels),
+      reader_(path),
+      motion_(EgoMotion::ParseChoice(config.ego_motion)) {
+  ReadRig(config.rig_file);
+}
 
-void LogPlayer::ReadRig() {
+void LogPlayer::ReadRig(const std::string& rig_file) {
   stereo_rig_t message;
   while (reader_.Next(&event_)) {
-    if (!Decode(event_, kStereoRigChannel, &message)) continue;
-    const RigDescription description = FromMessage(message);
-    rig_ = description.rig;
-    motion_.SetRig(description);
-    preparer_ = std::make_unique<FramePreparer>(rig_);
+    if (!Decode(event_, channels_.stereo_rig, &message)) continue;
+    SetRig(FromMessage(message));
     reader_.Rewind();
     return;
   }
-  throw std::runtime_error(reader_.path() + ": holds no " + kStereoRigChannel);
+  if (rig_file.empty()) {
+    throw std::runtime_error(reader_.path() + ": holds no " + channels_.stereo_rig +
+                             ", and rig_file names none");
+  }
+  SetRig(LoadRigFile(rig_file));
+  reader_.Rewind();
+}
+
+void LogPlayer::SetRig(const RigDescription& rig) {
+  rig_ = rig.rig;
+  motion_.SetRig(rig);
+  preparer_ = std::make_unique<FramePreparer>(rig_);
 }
 
 bool LogPlayer::ReadUntilReady() {
@@ -48,11 +62,11 @@ bool LogPlayer::ReadUntilReady() {
   while (reader_.Next(&event_)) {
     if (Decode(event_, kHeadPoseTruthChannel, &truth)) {
       if (HasPose(truth)) truths_[truth.utime] = FromMessage(truth);
-    } else if (Decode(event_, kArmStateChannel, &arm)) {
+    } else if (Decode(event_, channels_.arm_state, &arm)) {
       motion_.AddArmState(arm.utime, arm.joint_names, arm.joint_position, arm.joint_velocity);
-    } else if (Decode(event_, kCameraPoseChannel, &camera)) {
+    } else if (Decode(event_, channels_.camera_pose, &camera)) {
       motion_.AddCameraPose(camera.utime, FromMessage(camera));
-    } else if (Decode(event_, kStereoImagesChannel, &images)) {
+    } else if (Decode(event_, channels_.stereo_images, &images)) {
       if (has_images_) {  // no motion came in time: the pair goes on with what is known
         later_images_ = std::move(images);
         return true;

@@ -10,6 +10,7 @@
 #include "common/eventlog/event_log.h"
 #include "services/recogniser/ego_motion.h"
 #include "services/recogniser/frame_preparer.h"
+#include "services/recogniser/recogniser_config.h"
 #include "visavis/arm_state_t.hpp"
 #include "visavis/head_pose_t.hpp"
 #include "visavis/images_t.hpp"
@@ -23,8 +24,9 @@ namespace visavis {
 /// has come, or the next pair, or the log has ended.
 class LogPlayer {
  public:
-  /// @throws std::runtime_error where the log holds no rig.
-  explicit LogPlayer(const std::string& path);
+  /// Of @p config count channels, ego_motion, and rig_file where the log holds no rig.
+  /// @throws std::runtime_error where neither gives a rig.
+  explicit LogPlayer(const std::string& path, const RecogniserConfig& config = {});
 
   const StereoRig& rig() const { return rig_; }
 
@@ -37,13 +39,15 @@ class LogPlayer {
   const Pair* Next();
 
  private:
-  void ReadRig();
+  void ReadRig(const std::string& rig_file);
+  void SetRig(const RigDescription& rig);
   bool ReadUntilReady();
 
+  const RecogniserChannels channels_;
   EventLogReader reader_;
   LogEvent event_;
   StereoRig rig_;
-  EgoMotion motion_{EgoMotion::Choice::kAuto};
+  EgoMotion motion_;
   std::unique_ptr<FramePreparer> preparer_;
   images_t images_;
   bool has_images_{false};

@@ -34,6 +34,11 @@ std::uint64_t PictureChecksum(const ImageView& image) {
   return sum;
 }
 
+void PictureWatch::Forget() {
+  seen_ = {};
+  complaint_.clear();
+}
+
 void PictureWatch::TakeOutStale(StereoImages* images) {
   complaint_.clear();
   if (!images->right || !images->left) {

@@ -16,7 +16,8 @@ class PictureWatch {
   /// To be called with each pair, in order. A picture that is repeated is taken out of the pair:
   /// the other eye goes on alone.
   void TakeOutStale(StereoImages* images);
-  void Forget() { seen_ = {}; }
+  /// Another session: no picture was seen, nothing is wrong. The counts stay.
+  void Forget();
 
   /// Pairs whose right, left picture was stale, since the start.
   std::int64_t num_stale_right() const { return num_stale_[0]; }

@@ -9,10 +9,20 @@
 
 namespace visavis {
 
+void RefinedConfig::ValidateOrThrow(const std::string& prefix) const {
+  const int least = population.individuals + 2;
+  if (track_evaluations != 0 && track_evaluations < least) {
+    throw FieldError(prefix + "track_evaluations", std::to_string(track_evaluations),
+                     "must be " + std::to_string(least) + " or more, one generation of " + prefix +
+                         "population.individuals, or 0");
+  }
+}
+
 void RecogniserConfig::ValidateOrThrow() const {
   search.ValidateOrThrow("search.");
   start.ValidateOrThrow("start.");
   ga.ValidateOrThrow("ga.");
+  refined.ValidateOrThrow("refined.");
   head.ValidateOrThrow("head.");
   RefinedHead();
   if (!rig_file.empty() && !std::filesystem::exists(rig_file)) {
@@ -40,6 +50,7 @@ visavis::RefinedSettings RecogniserConfig::RefinedSettings() const {
   settings.space = SearchSpace::FromConfig(search);
   settings.recentre = Recentres(search);
   settings.start_X_CM = start.Pose();
+  settings.nearest_to_m = search.NearestTo();
   settings.feedforward = ParseFeedforward(feedforward);
   settings.seed = static_cast<std::uint64_t>(seed);
   return settings;

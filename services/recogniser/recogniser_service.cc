@@ -53,6 +53,7 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
       context_(context),
       timer_(&MonotonicSeconds),
       background_(!context.live),
+      budget_(context.live ? config.refined.budget_ms : 0),
       ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
       feedforward_(ParseFeedforward(config.feedforward)),
       refined_head_(config.RefinedHead()),
@@ -80,12 +81,22 @@ RecogniserService::~RecogniserService() = default;
 void RecogniserService::SetRig(const RigDescription& description) {
   auto preparer = std::make_unique<FramePreparer>(description.rig);
   auto estimator = NewEstimator(estimator_name_, description.rig);
+  TellIfBudgetIsTooSmall(description.rig);
   ego_motion_.SetRig(description);
   preparer_ = std::move(preparer);
   estimator_ = std::move(estimator);
   rig_ = description.rig;
   swap_probe_ = std::make_unique<SwapProbe>([this] { return AnyFaceEstimator(); });
   BeginTrack();
+}
+
+void RecogniserService::TellIfBudgetIsTooSmall(const StereoRig& rig) {
+  if (!budget_.is_limited()) return;
+  RefinedSettings settings = config_.RefinedSettings();
+  settings.start_X_CM = TransformFromPhi(0.5 * (settings.space.min + settings.space.max));
+  RefinedEstimator estimator(settings, refined_head_, rig);
+  budget_.SetGeneration(LeastGenerationMs(rig, &estimator, &timer_));
+  Complain("budget", budget_.complaint());
 }
 
 // Finds whoever is there, in one frame.
@@ -97,6 +108,7 @@ std::unique_ptr<Estimator> RecogniserService::AnyFaceEstimator() const {
   head.face.reset();
   auto estimator = std::make_unique<RefinedEstimator>(settings, head, *rig_);
   if (commanded_space_) estimator->SetSearchSpace(*commanded_space_);
+  estimator->SetEffort(budget_.effort());
   return estimator;
 }
 
@@ -119,6 +131,7 @@ std::unique_ptr<Estimator> RecogniserService::NewEstimator(const std::string& na
 void RecogniserService::BeginTrack() {
   picture_watch_.Forget();
   if (swap_probe_) swap_probe_->Forget();
+  for (const char* name : {"stale_images", "swapped_eyes"}) Complain(name, "");
   last_utime_us_.reset();
   head_was_tracked_ = false;
 }
@@ -243,6 +256,7 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
       timer_.Enter(Stage::kOther);
       const CameraStep step =
           last_utime_us_ ? ego_motion_.Between(*last_utime_us_, message.utime) : CameraStep{};
+      estimator_->SetEffort(budget_.effort());
       estimate = &estimator_->Process(frame, step, &timer_);
     } catch (const std::exception& e) {  // whatever it is, the pair gets its HEAD_POSE
       refused = e.what();
@@ -250,6 +264,7 @@ void RecogniserService::ProcessPair(const images_t& message, std::int64_t receiv
   }
   TellMissing(message);
   timer_.Enter(Stage::kOther);
+  if (estimate && estimator_name_ == "refined") KeepBudget(*estimate);
   PublishEstimate(message, estimate, received_us);
   if (estimate) {
     last_utime_us_ = message.utime;
@@ -294,6 +309,14 @@ void RecogniserService::LookForSwappedEyes(const images_t& message, bool is_trac
                : "");
 }
 
+// By the clock, and therefore live only.
+void RecogniserService::KeepBudget(const Estimate& estimate) {
+  if (!budget_.is_limited()) return;
+  if (estimate.budget_reduced) ++reduced_pairs_;
+  budget_.Took(timer_.TotalMs(), estimate.searched);
+  Complain("budget", budget_.complaint());
+}
+
 // Tells of a condition as long as it holds; it stays the last error.
 void RecogniserService::Complain(const std::string& name, const std::string& complaint) {
   std::string& told = told_[name];
@@ -301,59 +324,6 @@ void RecogniserService::Complain(const std::string& name, const std::string& com
   told = complaint;
   context_.status->SetCondition(name, complaint);
   if (!complaint.empty()) context_.status->Error(complaint, context_.clock->NowUs());
-}
-
-void RecogniserService::PublishEstimate(const images_t& message, const Estimate* estimate,
-                                        std::int64_t received_us) {
-  pose_ = EmptyHeadPose();
-  pose_.utime = message.utime;
-  pose_.seq = pairs_++;
-  // Without an estimate: a head that was tracked is lost; one that never was is still searched for.
-  pose_.status =
-      paused_ || head_was_tracked_ ? head_pose_t::STATUS_LOST : head_pose_t::STATUS_SEARCHING;
-  if (estimate) {
-    head_was_tracked_ = estimate->status != TrackStatus::kSearching;
-    FillHeadPose(*estimate, &pose_);
-    FillMotion(message.utime, *estimate);
-  }
-  context_.bus->Publish(config_.channels.head_pose, pose_);
-  PublishTiming(received_us);
-  if (estimate && config_.population_every > 0 && pose_.seq % config_.population_every == 0) {
-    PublishPopulation(message.utime);
-  }
-  context_.status->Processed(timing_.latency_ms);
-}
-
-// Where the camera was: the pose in the world, and what the feedforward had to go by.
-void RecogniserService::FillMotion(std::int64_t utime_us, const Estimate& estimate) {
-  const auto camera = ego_motion_.At(utime_us);
-  motion_missing_ = !camera && ego_motion_.source() != EgoMotionSource::kNone;
-  pose_.feedforward_source = SourceCode(ego_motion_.source(), motion_missing_);
-  if (motion_missing_) ++pairs_without_motion_;
-  if (!camera) return;
-  pose_.feedforward_extrapolated = camera->extrapolated;
-  if (camera->extrapolated) ++extrapolated_;
-  if (estimate.X_CM) SetWorldPose(camera->X_WC * *estimate.X_CM, &pose_);
-}
-
-void RecogniserService::PublishTiming(std::int64_t received_us) {
-  timer_.Enter(Stage::kOther);
-  timing_.utime = pose_.utime;
-  timing_.seq = pose_.seq;
-  timing_.received_utime = received_us;
-  timing_.published_utime = context_.clock->NowUs();
-  FillTiming(timer_, &timing_);
-  timing_.latency_ms = context_.live
-                           ? 1e-3 * static_cast<double>(timing_.published_utime - pose_.utime)
-                           : timing_.total_ms;
-  context_.bus->Publish(config_.channels.timing, timing_);
-}
-
-void RecogniserService::PublishPopulation(std::int64_t utime_us) {
-  population_.utime = utime_us;
-  population_.generation = estimator_->total_generations();
-  FillPopulation(estimator_->population(), &population_);
-  context_.bus->Publish(config_.channels.population, population_);
 }
 
 // Counts pairs that never reached us, by the pairs' own numbers.
@@ -378,6 +348,7 @@ void RecogniserService::UpdateStatus() {
   context_.status->SetCounter("pairs_with_stale_right_image", picture_watch_.num_stale_right());
   context_.status->SetCounter("pairs_with_stale_left_image", picture_watch_.num_stale_left());
   context_.status->SetCounter("pairs_with_swapped_images", swapped_pairs_);
+  context_.status->SetCounter("pairs_with_fewer_evaluations", reduced_pairs_);
 }
 
 }  // namespace visavis

@@ -12,6 +12,7 @@
 #include "services/recogniser/background_thread.h"
 #include "services/recogniser/ego_motion.h"
 #include "services/recogniser/estimator.h"
+#include "services/recogniser/frame_budget.h"
 #include "services/recogniser/frame_preparer.h"
 #include "services/recogniser/picture_watch.h"
 #include "services/recogniser/recogniser_config.h"
@@ -54,6 +55,7 @@ class RecogniserService final : public Service {
   void SetRig(const RigDescription& rig);
   std::unique_ptr<Estimator> AnyFaceEstimator() const;
   std::unique_ptr<Estimator> NewEstimator(const std::string& name, const StereoRig& rig) const;
+  void TellIfBudgetIsTooSmall(const StereoRig& rig);
   void BeginTrack();
   void BeginSessionIfPairsJumpBack(std::int64_t utime_us);
   void ProcessWaitingOfOldSession(std::int64_t motion_utime_us);
@@ -67,12 +69,14 @@ class RecogniserService final : public Service {
   void LookForSwappedEyes(const images_t& message, bool is_tracking);
   void SaveLearnedHead();
   void Complain(const std::string& name, const std::string& complaint);
+  void KeepBudget(const Estimate& estimate);
   void TellMissing(const images_t& message);
 
   const RecogniserConfig config_;
   const ServiceContext context_;
   StageTimer timer_;
   mutable BackgroundThread background_;
+  FrameBudget budget_;                       // none in a replay: nothing there depends on the clock
   std::optional<stereo_rig_t> rig_message_;  // of the rig in use
   std::optional<StereoRig> rig_;
   EgoMotion ego_motion_;
@@ -94,7 +98,7 @@ class RecogniserService final : public Service {
   recogniser_timing_t timing_{};
   ga_population_t population_{};
   std::int64_t pairs_{0}, newest_pair_us_{0}, pairs_without_motion_{0}, extrapolated_{0};
-  std::int64_t swapped_pairs_{0};
+  std::int64_t swapped_pairs_{0}, reduced_pairs_{0};
   std::optional<std::int64_t> last_utime_us_, last_image_seq_;
   std::optional<SearchSpace> commanded_space_;  // outlives a change of the rig
   bool paused_{false};

@@ -9,6 +9,7 @@ namespace {
 
 // The nearest that a head's centre may come to a camera: the model must lie in front of it.
 constexpr double kMinDepthM = 0.3;
+constexpr double kFarthestM = 10;
 
 }  // namespace
 
@@ -22,6 +23,20 @@ void SearchSpaceConfig::ValidateOrThrow(const std::string& prefix) const {
   require(min_x_mm, max_x_mm, "min_x_mm", "max_x_mm");
   require(min_y_mm, max_y_mm, "min_y_mm", "max_y_mm");
   require(min_z_mm, max_z_mm, "min_z_mm", "max_z_mm");
+  if (!nearest_to.empty() && nearest_to.size() != 3) {
+    throw FieldError(prefix + "nearest_to", std::to_string(nearest_to.size()) + " numbers",
+                     "must be x y z, or none");
+  }
+  for (const double x : nearest_to) {
+    if (!(std::abs(x) <= kFarthestM)) {
+      throw FieldError(prefix + "nearest_to", std::to_string(x), "must each be -10 to 10 m");
+    }
+  }
+}
+
+std::optional<Eigen::Vector3d> SearchSpaceConfig::NearestTo() const {
+  if (nearest_to.empty()) return std::nullopt;
+  return Eigen::Vector3d(nearest_to[0], nearest_to[1], nearest_to[2]);
 }
 
 SearchSpace SearchSpace::FromConfig(const SearchSpaceConfig& config) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/rule.h"
 #include "common/geometry/head_angles.h"
@@ -23,6 +25,7 @@ struct SearchSpaceConfig {
     a->Visit("max_theta_deg", &max_theta_deg, InRange(0.0, 80.0, "deg"));
     a->Visit("max_psi_deg", &max_psi_deg, InRange(0.0, 80.0, "deg"));
     a->Visit("recentre", &recentre);
+    a->Visit("nearest_to", &nearest_to);
   }
   /// @throws FieldError, keys under @p prefix.
   void ValidateOrThrow(const std::string& prefix) const;
@@ -37,6 +40,11 @@ struct SearchSpaceConfig {
   /// One axis by itself: about the optical axis, the vertical, the horizontal; 0: max_angle_deg.
   double max_phi_deg{0}, max_theta_deg{0}, max_psi_deg{0};
   bool recentre{true};  ///< custom: move the position's range with the tracked head
+  /// [m] x y z in C: of several faces in view the one nearest to it is taken at the start; empty:
+  /// the one that looks most like a face. Estimator refined.
+  std::vector<double> nearest_to;
+
+  std::optional<Eigen::Vector3d> NearestTo() const;
 };
 
 /// The box of poses that the GA searches.

@@ -5,7 +5,10 @@
 // the model's is a matter of definition, and constant for a subject. Columns: log; frames with the
 // head, TRACKING %, false TRACKING % (of all frames; above 30 mm or 10 deg aligned, or without a
 // head); first lock [frame]; over TRACKING frames after 2 s RMSE mm and deg, aligned by the
-// reference, then by the run itself; median and 99th percentile of the time of a frame [ms].
+// reference, then by the run itself; median and 99th percentile of the time of a frame [ms]; over
+// the same frames, aligned by the run itself, the mean of the normalised estimation error squared
+// (e' P^-1 e with the covariance P that was told: expected 6), of the position's part and of the
+// rotation's (expected 3 each).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -33,6 +36,7 @@ struct Frame {
   double time_s;
   bool tracking;
   RigidTransform X_CM;
+  Eigen::Matrix<double, 6, 6> covariance;
   std::optional<RigidTransform> truth;
   double ms;
 };
@@ -51,8 +55,8 @@ std::vector<Frame> Run(const std::string& log, std::uint64_t seed, const HeadGeo
     const Estimate& estimate = estimator.Process(pair->frame, pair->step, &timer);
     timer.Enter(Stage::kOther);
     frames.push_back({1e-6 * static_cast<double>(pair->frame.utime_us - start_us),
-                      estimate.status == TrackStatus::kTracking, *estimate.X_CM, pair->truth,
-                      timer.TotalMs()});
+                      estimate.status == TrackStatus::kTracking, *estimate.X_CM,
+                      *estimate.covariance, pair->truth, timer.TotalMs()});
   }
   if (frames.empty()) throw std::runtime_error(log + ": no pair");
   return frames;
@@ -91,6 +95,28 @@ std::pair<double, double> Rmse(const std::vector<Frame>& frames, const RigidTran
   return {std::sqrt(mm2 / std::max(n, 1)), std::sqrt(deg2 / std::max(n, 1))};
 }
 
+/// Normalised estimation error squared: of all six, of the position, of the rotation.
+Eigen::Vector3d Nees(const std::vector<Frame>& frames, const RigidTransform& X_MT) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int n = 0;
+  for (const Frame& frame : frames) {
+    if (!frame.tracking || !frame.truth || frame.time_s < kSettleS) continue;
+    const RigidTransform X_CT = frame.X_CM * X_MT;
+    Vector6d e;  // as head_pose_t says: p_CM, small turn about C's axes
+    e << frame.truth->translation() - X_CT.translation(),
+        LogRotation(frame.truth->linear() * X_CT.linear().transpose());
+    const auto squared = [](const auto& error, const auto& covariance) -> double {
+      return error.dot(covariance.ldlt().solve(error));
+    };
+    const Eigen::Matrix3d P_p = frame.covariance.topLeftCorner<3, 3>();
+    const Eigen::Matrix3d P_r = frame.covariance.bottomRightCorner<3, 3>();
+    const Eigen::Vector3d e_p = e.head<3>(), e_r = e.tail<3>();
+    sum += Eigen::Vector3d(squared(e, frame.covariance), squared(e_p, P_p), squared(e_r, P_r));
+    ++n;
+  }
+  return sum / std::max(n, 1);
+}
+
 bool IsFalse(const Frame& frame, const RigidTransform& X_MT) {
   if (!frame.tracking) return false;
   if (!frame.truth) return true;
@@ -112,11 +138,13 @@ void PrintRow(const std::string& log, const std::vector<Frame>& frames,
   }
   std::sort(ms.begin(), ms.end());
   const auto [mm, deg] = Rmse(frames, X_MT);
-  const auto [self_mm, self_deg] = Rmse(frames, OffsetOf(frames, kSettleS));
-  std::printf("%s %d %.1f %.2f %d %.2f %.2f %.2f %.2f %.2f %.2f\n", log.c_str(), with_head,
-              100.0 * tracking / std::max(with_head, 1),
+  const RigidTransform X_MT_self = OffsetOf(frames, kSettleS);
+  const auto [self_mm, self_deg] = Rmse(frames, X_MT_self);
+  const Eigen::Vector3d nees = Nees(frames, X_MT_self);
+  std::printf("%s %d %.1f %.2f %d %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f\n", log.c_str(),
+              with_head, 100.0 * tracking / std::max(with_head, 1),
               100.0 * wrong / static_cast<double>(frames.size()), first, mm, deg, self_mm, self_deg,
-              ms[ms.size() / 2], ms[ms.size() * 99 / 100]);
+              ms[ms.size() / 2], ms[ms.size() * 99 / 100], nees[0], nees[1], nees[2]);
 }
 
 }  // namespace

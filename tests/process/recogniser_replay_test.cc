@@ -210,6 +210,22 @@ TEST_F(RecogniserReplayTest, RecordingOverTheInputIsRefusedAndTheInputStays) {
   EXPECT_EQ(std::filesystem::file_size(Input()), size);
 }
 
+TEST_F(RecogniserReplayTest, AConfigurationThatIsRefusedLeavesAnEarlierLogAsItIs) {
+  const std::string rig = *folder_ / "bad_rig.yaml", earlier = *folder_ / "earlier.lcm";
+  std::ofstream(rig) << "right: {width: 0}\n";
+  std::ofstream(earlier) << "an earlier log";
+  auto flags = ReplayFlags({"--set", "rig_file=" + rig});
+  flags[3] = earlier;
+  EXPECT_THAT(Refusal(flags, 2), HasSubstr(rig));
+  std::string text;
+  std::getline(std::ifstream(earlier), text);
+  EXPECT_EQ(text, "an earlier log");
+  // And where there was none, none is left behind.
+  flags[3] = *folder_ / "none.lcm";
+  Refusal(flags, 2);
+  EXPECT_FALSE(std::filesystem::exists(flags[3]));
+}
+
 TEST_F(RecogniserReplayTest, BadFlagsAndConfigurationsExitWith2AndOneLine) {
   const auto refusal = [](const std::vector<std::string>& more) {
     return Refusal(ReplayFlags(more), 2);

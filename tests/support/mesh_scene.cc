@@ -123,12 +123,15 @@ void MeshScene::Fill(const std::array<Vector3f, 3>& corners_M,
   }
 }
 
-void MeshScene::Paint(const RigidTransform& X_CM, const Painter& painter, Eye* eye) {
-  const HeadMesh& mesh = SharedAdultHead().mesh;
-  const EyePose pose(eye->geometry, X_CM);
+void MeshScene::PaintWall(Eye* eye) {
   std::fill(eye->pixels.begin(), eye->pixels.end(), kSceneWall);
   std::fill(eye->classes.begin(), eye->classes.end(), kSurroundings);
   std::fill(eye->depth.begin(), eye->depth.end(), std::numeric_limits<float>::infinity());
+}
+
+void MeshScene::Paint(const RigidTransform& X_CM, const Painter& painter, Eye* eye) {
+  const HeadMesh& mesh = SharedAdultHead().mesh;
+  const EyePose pose(eye->geometry, X_CM);
   for (const auto& triangle : mesh.triangles) {
     std::array<Vector3f, 3> corners_M, corners_E;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -154,9 +157,15 @@ void MeshScene::LearnColors(const ImageView& picture, Eye* eye) {
 }
 
 const StereoView& MeshScene::Show(const RigidTransform& X_CM, const Painter& painter) {
+  return ShowAll({X_CM}, painter);
+}
+
+const StereoView& MeshScene::ShowAll(const std::vector<RigidTransform>& X_CM,
+                                     const Painter& painter) {
   for (std::size_t i = 0; i < 2; ++i) {
     Eye& eye = eyes_[i];
-    Paint(X_CM, painter, &eye);
+    PaintWall(&eye);
+    for (const RigidTransform& X : X_CM) Paint(X, painter, &eye);
     LearnColors(picture(i), &eye);
     const PixelBox whole{0, 0, eye.geometry.width / 16 * 16, eye.geometry.height / 16 * 16};
     eye.scores.Build(picture(i), eye.colors, whole);
@@ -169,6 +178,7 @@ const StereoView& MeshScene::Show(const RigidTransform& X_CM, const Painter& pai
 const StereoView& MeshScene::ShowGray(const RigidTransform& X_CM, const Painter& painter) {
   for (std::size_t i = 0; i < 2; ++i) {
     Eye& eye = eyes_[i];
+    PaintWall(&eye);
     Paint(X_CM, painter, &eye);
     std::transform(eye.pixels.begin(), eye.pixels.end(), eye.gray.begin(), [](const Color& c) {
       return static_cast<std::uint8_t>((77 * c[0] + 150 * c[1] + 29 * c[2] + 128) / 256);

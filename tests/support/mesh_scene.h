@@ -48,7 +48,9 @@ class MeshScene {
 
   /// Paints both eyes with the head at @p X_CM on a flat wall. The view lives until the next call.
   const StereoView& Show(const RigidTransform& X_CM, const Painter& painter);
-  /// The same in shades of grey.
+  /// The same with a head at each of @p X_CM; colours are learned from all of them.
+  const StereoView& ShowAll(const std::vector<RigidTransform>& X_CM, const Painter& painter);
+  /// The same as Show() in shades of grey.
   const StereoView& ShowGray(const RigidTransform& X_CM, const Painter& painter);
 
   ImageView picture(std::size_t eye) const;
@@ -66,6 +68,7 @@ class MeshScene {
     std::vector<std::uint8_t> gray, classes;  // ColorClass
     std::vector<float> depth;
   };
+  static void PaintWall(Eye* eye);
   static void Paint(const RigidTransform& X_CM, const Painter& painter, Eye* eye);
   static void Fill(const std::array<Eigen::Vector3f, 3>& corners_M,
                    const std::array<Eigen::Vector3f, 3>& corners_E, const Painter& painter,

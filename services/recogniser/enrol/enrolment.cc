@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "services/recogniser/fitness_kernel.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/refined/refined_estimator.h"
 
@@ -25,7 +26,7 @@ struct Reading {
 
 /// Tracks @p head through the recording.
 Reading Track(const std::string& log, const RecogniserConfig& config, const HeadGeometry& head) {
-  LogPlayer player(log);
+  LogPlayer player(log, config);
   RefinedEstimator estimator(config.RefinedSettings(), head, player.rig());
   StageTimer timer(&NoTime);
   const auto X_RM = MakeTransform(Eigen::Matrix3d::Identity(), -head.p_MR_m);
@@ -46,7 +47,7 @@ Reading Track(const std::string& log, const RecogniserConfig& config, const Head
 /// The pictures of @p views, in a bundle.
 std::unique_ptr<HeadBundle> BundleOf(const std::string& log, const RecogniserConfig& config,
                                      const HeadGeometry& head, const Reading& reading) {
-  LogPlayer player(log);
+  LogPlayer player(log, config);
   const RefinedSettings settings = config.RefinedSettings();
   auto bundle = std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(),
                                              settings.space.distance(), head, reading.colors);
@@ -65,6 +66,7 @@ std::unique_ptr<HeadBundle> BundleOf(const std::string& log, const RecogniserCon
 }  // namespace
 
 Enrolment Enrol(const std::string& log, const RecogniserConfig& config) {
+  SelectSimdTarget(config.simd.c_str());
   Enrolment enrolment;
   enrolment.head = config.RefinedHead();
   const HeadSurface start = enrolment.head.surface;

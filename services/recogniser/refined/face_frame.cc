@@ -13,7 +13,6 @@ using Eigen::Vector3f;
 constexpr int kLevel = 5;
 constexpr double kGenericSpacing_m = 0.003;
 constexpr float kSmooth_m = 0.003f, kNear_m = 0.008f, kLeastWeight = 0.3f;
-constexpr Band kBand = kFineBand;
 
 /// One kind of evidence: what a point may be off, beyond how many times that it hardly counts more,
 /// and how much a point is worth, as its neighbours see the same noise.
@@ -31,6 +30,7 @@ constexpr Kind kFeatures{1, 2, 0.1};            ///< of the face's contrast
 constexpr Kind kGenericShape{0.001, 10, 0.02};  ///< [m]
 constexpr double kOrigin_m = 0.001;             ///< the outlines have told it
 
+constexpr double kLeastInformation = 1e-3;  ///< [1/rad^2]
 constexpr int kMostSteps = 12, kPerPoint = 4;
 constexpr double kMoved_m = 5e-5, kTurned_rad = 5e-4;  ///< steps so small change nothing
 constexpr double kProbe_m = 5e-4, kProbe_rad = 6e-3;   ///< of the numeric derivative
@@ -39,14 +39,16 @@ constexpr double kProbe_m = 5e-4, kProbe_rad = 6e-3;   ///< of the numeric deriv
 
 FaceFrame::FaceFrame(const HeadSurface& generic) : generic_(generic), sphere_(kLevel) {
   const FacePoints dense = FacePointsOf(generic, kGenericSpacing_m);
-  std::vector<Vector3f> points;
-  std::vector<float> values;
-  for (std::size_t i = 0; i < dense.size(); ++i) {
-    if (!dense.has_generic[i]) continue;
-    points.push_back(dense.points[i]);
-    values.push_back(dense.generic[kBand][i]);
+  for (const Band band : {kCoarseBand, kFineBand}) {
+    std::vector<Vector3f> points;
+    std::vector<float> values;
+    for (std::size_t i = 0; i < dense.size(); ++i) {
+      if (!dense.has_generic[i]) continue;
+      points.push_back(dense.points[i]);
+      values.push_back(dense.generic[band][i]);
+    }
+    generic_looks_[band] = LooksOf(points, values);
   }
-  generic_looks_ = LooksOf(points, values);
 }
 
 FaceFrame::Looks FaceFrame::LooksOf(const std::vector<Vector3f>& points,
@@ -84,8 +86,7 @@ bool FaceFrame::At(const Looks& looks, const Vector3f& direction, float* value) 
 
 void FaceFrame::Misfits(const Asked& asked, const RigidTransform& X_MN,
                         Eigen::VectorXd* misfits) const {
-  const std::vector<Vector3f>& points = asked.face.points;
-  const std::vector<float>& value = asked.face.value[kBand];
+  const auto& [points, value, surface, generic, looks, contrast] = asked;
   misfits->setZero(static_cast<Eigen::Index>(points.size()) * kPerPoint);
   const Eigen::Isometry3f X(X_MN.matrix().cast<float>()), X_back = X.inverse();
   std::vector<std::pair<std::size_t, float>> features;  // points where the generic face says one
@@ -94,15 +95,15 @@ void FaceFrame::Misfits(const Asked& asked, const RigidTransform& X_MN,
     const Vector3f p_M = X * points[i];
     const Vector3f mirrored = X_back * Vector3f(-p_M.x(), p_M.y(), p_M.z());
     const Vector3f towards = mirrored.normalized();
-    const float beyond = mirrored.norm() - asked.surface.Radius(towards);
+    const float beyond = mirrored.norm() - surface.Radius(towards);
     out[0] = kMirrorShape.Misfit(static_cast<double>(beyond));
     float other;
-    if (At(asked.looks, towards, &other)) {
-      out[1] = kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / asked.contrast);
+    if (At(looks, towards, &other)) {
+      out[1] = kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / contrast);
     }
     const float over = p_M.norm() - generic_.Radius(p_M.normalized());
     out[2] = kGenericShape.Misfit(static_cast<double>(over));
-    if (At(generic_looks_, p_M, &other)) features.emplace_back(i, other);
+    if (At(generic, p_M, &other)) features.emplace_back(i, other);
   }
   // value = gain * feature + offset
   double n = 0, f = 0, v = 0, ff = 0, fv = 0;
@@ -119,19 +120,13 @@ void FaceFrame::Misfits(const Asked& asked, const RigidTransform& X_MN,
   for (const auto& [i, feature] : features) {
     const double expected = gain * static_cast<double>(feature) + offset;
     (*misfits)[static_cast<Eigen::Index>(i) * kPerPoint + 3] =
-        kFeatures.Misfit((static_cast<double>(value[i]) - expected) / asked.contrast);
+        kFeatures.Misfit((static_cast<double>(value[i]) - expected) / contrast);
   }
 }
 
-RigidTransform FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface,
-                               const RigidTransform& X_guess) const {
-  const std::vector<float>& value = face.value[kBand];
-  double sum = 0;
-  for (const float v : value) sum += static_cast<double>(v * v);
-  RigidTransform X_MN = X_guess;
-  if (value.empty() || !(sum > 0)) return X_MN;
-  const Asked asked{face, surface, LooksOf(face.points, value),
-                    std::sqrt(sum / static_cast<double>(value.size()))};
+RigidTransform FaceFrame::Refine(const Asked& asked, const RigidTransform& X_start,
+                                 const Eigen::Vector3d& p_NM) const {
+  RigidTransform X_MN = X_start;
   Eigen::VectorXd now, more, less;
   for (int k = 0; k < kMostSteps; ++k) {
     Misfits(asked, X_MN, &now);
@@ -145,13 +140,34 @@ RigidTransform FaceFrame::Find(const LearnedFace& face, const HeadSurface& surfa
     }
     Matrix6d H = J.transpose() * J;
     Vector6d g = -J.transpose() * now;
+    // The outlines' origin is M's.
     H.diagonal().head<3>().array() += 1 / (kOrigin_m * kOrigin_m);
-    g.head<3>() -= (X_MN.translation() - X_guess.translation()) / (kOrigin_m * kOrigin_m);
-    H.diagonal().tail<3>().array() += 1e-3;
+    g.head<3>() -= X_MN * p_NM / (kOrigin_m * kOrigin_m);
+    H.diagonal().tail<3>().array() += kLeastInformation;
     const Vector6d step = H.ldlt().solve(g);
     if (!step.allFinite()) break;
     X_MN = Moved(X_MN, step);
     if (step.head<3>().norm() < kMoved_m && step.tail<3>().norm() < kTurned_rad) break;
+  }
+  return X_MN;
+}
+
+// Coarse looks lead from farther away, fine ones are exact.
+RigidTransform FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface,
+                               const Eigen::Vector3d& p_NM) const {
+  RigidTransform X_MN = MakeTransform(Eigen::Matrix3d::Identity(), -p_NM);
+  for (const Band band : {kCoarseBand, kFineBand}) {
+    const std::vector<float>& value = face.value[band];
+    double sum = 0;
+    for (const float v : value) sum += static_cast<double>(v * v);
+    if (!(sum > 0)) continue;
+    const Asked asked{face.points,
+                      value,
+                      surface,
+                      generic_looks_[band],
+                      LooksOf(face.points, value),
+                      std::sqrt(sum / static_cast<double>(value.size()))};
+    X_MN = Refine(asked, X_MN, p_NM);
   }
   return X_MN;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "common/geometry/rigid_transform.h"
@@ -16,10 +17,10 @@ class FaceFrame {
  public:
   explicit FaceFrame(const HeadSurface& generic);
 
-  /// X_MN of the frame N in which @p face and @p surface are given, from @p X_guess on, of which
-  /// the origin is a measurement too: the outlines have told it.
+  /// X_MN of the frame N in which @p face and @p surface are given: the head's frame M is turned
+  /// from N by some degrees, and has its origin about @p p_NM, as the outlines have told.
   RigidTransform Find(const LearnedFace& face, const HeadSurface& surface,
-                      const RigidTransform& X_guess) const;
+                      const Eigen::Vector3d& p_NM) const;
 
  private:
   /// Brightness of a band by direction; not known where no point is near.
@@ -28,20 +29,24 @@ class FaceFrame {
     std::vector<unsigned char> known;  ///< by vertex of the sphere
   };
   struct Asked {
-    const LearnedFace& face;
+    const std::vector<Eigen::Vector3f>& points;
+    const std::vector<float>& value;  ///< of one band, at the points
     const HeadSurface& surface;
+    const Looks& generic;
     Looks looks;
     double contrast;  ///< rms of the face's brightness
   };
 
   Looks LooksOf(const std::vector<Eigen::Vector3f>& points, const std::vector<float>& value) const;
   bool At(const Looks& looks, const Eigen::Vector3f& direction, float* value) const;
+  RigidTransform Refine(const Asked& asked, const RigidTransform& X_MN,
+                        const Eigen::Vector3d& p_NM) const;
   /// What speaks against X_MN, each in its standard deviation.
   void Misfits(const Asked& asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const;
 
   const HeadSurface generic_;
   const Icosphere sphere_;
-  Looks generic_looks_;
+  std::array<Looks, kNumBands> generic_looks_;
 };
 
 }  // namespace visavis

@@ -11,8 +11,8 @@ constexpr int kFewest = 40;
 
 }  // namespace
 
-FaceTexture::FaceTexture(const FacePoints& face)
-    : generic_(face), points_(face), known_(face.size()) {
+FaceTexture::FaceTexture(const FacePoints& face) : generic_(face), points_(face) {
+  for (auto& k : known_) k.resize(face.size());
   for (auto& v : value_) v.resize(face.size());
   for (auto& w : weight_) w.resize(face.size());
 }
@@ -30,24 +30,31 @@ void FaceTexture::Forget() {
   points_ = generic_;
   for (auto& w : weight_) w.assign(generic_.size(), 0.0f);
   for (auto& v : value_) v.assign(generic_.size(), 0.0f);
-  known_.assign(generic_.size(), 0);
+  for (auto& k : known_) k.assign(generic_.size(), 0);
 }
 
 void FaceTexture::Remember(const LearnedFace& face) {
-  points_ = {};
   points_.points = face.points;
   points_.normals = face.normals;
+  for (auto& pattern : points_.generic) pattern.clear();
+  points_.has_generic.clear();
   value_ = face.value;
   for (auto& w : weight_) w.assign(face.points.size(), 1 / kMinRate);
-  known_.assign(face.points.size(), 1);
+  for (auto& k : known_) k.assign(face.points.size(), 1);
   learned_.fill(true);
   fixed_ = true;
 }
 
 LearnedFace FaceTexture::Learned() const {
   LearnedFace face;
-  for (std::size_t i = 0; i < known_.size(); ++i) {
-    if (!known_[i]) continue;
+  const auto is_known = [&](std::size_t i) {
+    for (std::size_t band = 0; band < kNumBands; ++band) {
+      if (learned_[band] && !known_[band][i]) return false;
+    }
+    return learned();
+  };
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!is_known(i)) continue;
     face.points.push_back(points_.points[i]);
     face.normals.push_back(points_.normals[i]);
     for (std::size_t band = 0; band < kNumBands; ++band)
@@ -59,18 +66,18 @@ LearnedFace FaceTexture::Learned() const {
 void FaceTexture::Learn(Band band, const FaceSamples& samples) {
   float gain = 1, offset = 0;
   if (learned_[band]) {
-    const GainOffset fit = FitPattern(samples, value_[band], known_);
+    const GainOffset fit = FitPattern(samples, value_[band], known_[band]);
     if (fit.count < kFewest) return;
     gain = static_cast<float>(std::clamp(fit.gain, kMinGain, kMaxGain));
     offset = static_cast<float>(fit.offset);
   }
-  for (std::size_t i = 0; i < known_.size(); ++i) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
     if (!samples.seen[i]) continue;
     float& weight = weight_[band][i];
     const float rate = std::max(kMinRate, 1 / (weight + 1));
     value_[band][i] += rate * ((samples.value[i] - offset) / gain - value_[band][i]);
     weight += 1;
-    known_[i] = 1;
+    known_[band][i] = 1;
   }
   learned_[band] = true;
 }

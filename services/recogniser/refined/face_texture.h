@@ -15,11 +15,13 @@ class FaceTexture {
  public:
   explicit FaceTexture(const FacePoints& face);
 
+  /// Neither this nor Remember() allocates once both were called.
   void Forget();
   /// Takes over @p face, as if it had been learned for long.
   void Remember(const LearnedFace& face);
   /// Whether it was taken over, not learned here: its frame is fixed, and so is it.
   bool fixed() const { return fixed_; }
+  /// The points known in every band that was learned.
   LearnedFace Learned() const;
   /// The points in the M frame.
   const FacePoints& points() const { return points_; }
@@ -31,8 +33,8 @@ class FaceTexture {
 
   bool learned() const { return learned_[kFineBand] || learned_[kCoarseBand]; }
   const std::vector<float>& pattern(Band band) const { return value_[band]; }
-  /// Points seen often enough to be compared.
-  const std::vector<unsigned char>& known() const { return known_; }
+  /// Points that were seen in @p band, and are compared there.
+  const std::vector<unsigned char>& known(Band band) const { return known_[band]; }
 
  private:
   const FacePoints& generic_;
@@ -40,7 +42,7 @@ class FaceTexture {
   bool fixed_{false};
   std::array<bool, kNumBands> learned_{};
   std::array<std::vector<float>, kNumBands> value_, weight_;
-  std::vector<unsigned char> known_;
+  std::array<std::vector<unsigned char>, kNumBands> known_;
 };
 
 }  // namespace visavis

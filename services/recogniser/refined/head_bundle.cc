@@ -136,12 +136,12 @@ void HeadBundle::AddShape(const HeadView& view, Band band) {
   for (std::size_t eye = 0; eye < 2; ++eye) {
     if (!view_[eye].seen()) continue;
     SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), band, kMinFacing, &s);
-    const GainOffset fit = FitPattern(s, pattern, model_->texture.known());
+    const GainOffset fit = FitPattern(s, pattern, model_->texture.known(band));
     if (fit.count < kFewestPoints || !(fit.gain > 0)) continue;
     const auto gain = static_cast<float>(fit.gain), offset = static_cast<float>(fit.offset);
     const float sigma = kRelativeSigma * gain * static_cast<float>(fit.pattern_rms) + kNoise;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!s.seen[i] || !model_->texture.known()[i]) continue;
+      if (!s.seen[i] || !model_->texture.known(band)[i]) continue;
       const Eigen::Vector3f d = points.points[i].normalized();
       const float residual = gain * pattern[i] + offset - s.value[i];
       const float robust = 1 + residual * residual / (4 * sigma * sigma);

@@ -37,7 +37,7 @@ struct HeadLearner::Work {
     for (int turn = 0; turn < kTurns; ++turn) {
       for (int round = 0; round < kRounds; ++round) bundle->Round();
       const HeadGeometry head = bundle->Enrolled();
-      bundle->MoveFrame(finder->Find(*head.face, head.surface, Anchor()));
+      bundle->MoveFrame(finder->Find(*head.face, head.surface, Anchor().inverse().translation()));
     }
     learned.head = std::make_unique<PreparedHead>(config, bundle->Enrolled());
     learned.X_MN = bundle->pose(last).inverse() * X_CN;

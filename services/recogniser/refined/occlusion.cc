@@ -45,7 +45,7 @@ double HideOccluded(const FaceTexture& texture, Band band, FaceSamples* samples)
   const std::vector<Eigen::Vector3f>& points = texture.points().points;
   std::array<Patch, kColumns * kRows> patches{};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!samples->seen[i] || !texture.known()[i]) continue;
+    if (!samples->seen[i] || !texture.known(band)[i]) continue;
     Patch& patch = patches[static_cast<std::size_t>(PatchOf(points[i]))];
     const float x = pattern[i], y = samples->value[i];
     patch.x += x;

@@ -86,7 +86,7 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
     SampleFace(texture.points(), view[e], poses[e], band, kMinFacing, &samples_[e]);
     const double hidden = HideOccluded(texture, band, &samples_[e]);
     const GainOffset fit = AddPattern(texture.points(), samples_[e], poses[e].R_CM,
-                                      texture.pattern(band), texture.known(), kTextureSigma,
+                                      texture.pattern(band), texture.known(band), kTextureSigma,
                                       static_cast<float>(config_.texture_weight), equations);
     refined->texture_ncc += fit.correlation - kHiddenDoubt * hidden;
     ++eyes;

@@ -81,6 +81,7 @@ struct HeadChoice {
 struct RefinedConfig {
   template <typename A>
   void Serialize(A* a) {
+    a->Visit("budget_ms", &budget_ms, InRange(0.0, 10000.0, "ms"));
     a->Visit("track_evaluations", &track_evaluations, InRange(0, 100000));
     a->Visit("search_shots", &search_shots, InRange(0, 100000));
     a->Visit("search_evaluations", &search_evaluations, InRange(100, 100000));
@@ -93,6 +94,11 @@ struct RefinedConfig {
     a->Visit("evidence", &evidence);
     a->Visit("head", &head);
   }
+  /// @throws FieldError, keys under @p prefix, for evaluations too few for one generation.
+  void ValidateOrThrow(const std::string& prefix) const;
+
+  /// [ms] Live only: where a frame takes longer, the next ones run fewer evaluations. 0: never.
+  double budget_ms{100};
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
   int search_shots{3000};       ///< poses glanced at, in a frame without
   int search_evaluations{800};  ///< of the fitness by the GA after them
@@ -112,7 +118,8 @@ struct RefinedSettings {
   SearchSpace space;
   bool recentre{true};
   FeedforwardMode feedforward{FeedforwardMode::kExact};
-  std::optional<RigidTransform> start_X_CM;  ///< where the head is, if it is known
+  std::optional<RigidTransform> start_X_CM;     ///< where the head is, if it is known
+  std::optional<Eigen::Vector3d> nearest_to_m;  ///< C: which face to take at the start
   std::uint64_t seed{1};
 };
 

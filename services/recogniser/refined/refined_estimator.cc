@@ -9,22 +9,7 @@ namespace {
 constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the enrolled face
 constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
-constexpr double kShape_m = 0.0006, kShape_rad = 0.009;  ///< errors of a head's shape cause
-constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;     ///< a head may leave the space by
-
-/// From the normal equations, and what they cannot know: the head is not shaped as the model. The
-/// head frame's constant offset is a matter of definition and not in it. @p p_MR_C: R's origin from
-/// M's, in C; its position hangs on the rotation with that lever.
-Matrix6d Covariance(const Matrix6d& information, const Eigen::Vector3d& p_MR_C) {
-  Matrix6d covariance = information.inverse();
-  covariance.diagonal().head<3>().array() += kShape_m * kShape_m;
-  covariance.diagonal().tail<3>().array() += kShape_rad * kShape_rad;
-  Matrix6d lever = Matrix6d::Identity();
-  lever.topRightCorner<3, 3>() << 0, p_MR_C.z(), -p_MR_C.y(),  //
-      -p_MR_C.z(), 0, p_MR_C.x(),                              //
-      p_MR_C.y(), -p_MR_C.x(), 0;
-  return lever * covariance * lever.transpose();
-}
+constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
 
 }  // namespace
 
@@ -72,6 +57,7 @@ void RefinedEstimator::ForgetFace() {
   learned_.reset();
   learner_.Forget();
   anchor_.Forget();
+  covariance_.Forget();
   strange_in_a_row_ = 0;
 }
 
@@ -100,6 +86,11 @@ SearchSpace RefinedEstimator::InM(SearchSpace space) const {
   space.min.head<3>() -= X_MR_.translation();
   space.max.head<3>() -= X_MR_.translation();
   return space;
+}
+
+int RefinedEstimator::Lowered(int count, double share, int least) {
+  const double lowered = std::round(share * static_cast<double>(count));
+  return std::max(std::min(count, least), static_cast<int>(lowered));
 }
 
 void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
@@ -174,8 +165,11 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
     return head().coarse_fitness.Evaluate(view_, TransformFromPhi(phi)).total();
   };
   if (settings_.refined.track_evaluations == 0) return best;
+  const int one_generation = settings_.refined.population.individuals + 2;
+  const int evaluations =
+      Lowered(settings_.refined.track_evaluations, effort_.tracking, one_generation);
   population_.Evaluate(fitness);
-  while (estimate_.evaluations < settings_.refined.track_evaluations) {
+  while (estimate_.evaluations < evaluations) {
     population_.Reproduce(fitness);
     ++estimate_.generations;
   }
@@ -268,6 +262,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   Feedforward(step);
   estimate_.generations = estimate_.evaluations = 0;
   const bool tracked = X_CM_ && bad_in_a_row_ == 0;
+  estimate_.budget_reduced = tracked && effort_.tracking < 1;
   timer->Enter(Stage::kMap);
   TakePictures(frame);
   BuildMaps(tracked ? &*X_CM_ : nullptr);
@@ -284,12 +279,14 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
       BuildMaps(nullptr);
     }
   }
+  estimate_.searched = !good;
   if (!good) {
+    estimate_.budget_reduced |= effort_.searching < 1;
     // A stranger who is gone is forgotten: the enrolled face is waited for.
     if (bad_in_a_row_ == kStrangerGone) RememberEnrolled();
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
-    candidate_ = Search();
+    candidate_ = SearchNearest();
     // One eye can keep a track for a while, not begin one: its depth is a guess.
     const bool known = IsKnownFace(candidate_, FindTextureNcc());
     if (known || !BothEyes()) strange_in_a_row_ = 0;
@@ -309,8 +306,11 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   estimate_.X_CM = *X_CM_ * X_MR_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
+  const Matrix6d& information = candidate_.refined.information;
   estimate_.covariance =
-      Covariance(candidate_.refined.information, X_CM_->linear() * X_MR_.translation());
+      WithLever(good && BothEyes() ? covariance_.OfLearnedFace(information, TowardsCamera(*X_CM_))
+                                   : PoseCovariance::OfAnyFace(information),
+                X_CM_->linear() * X_MR_.translation());
   total_generations_ += estimate_.generations;
   if (good && BothEyes()) Learn(frame);  // one eye's depth is no master
   ++frames_;

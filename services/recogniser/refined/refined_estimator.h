@@ -13,6 +13,7 @@
 #include "services/recogniser/refined/head_anchor.h"
 #include "services/recogniser/refined/head_geometry.h"
 #include "services/recogniser/refined/head_learner.h"
+#include "services/recogniser/refined/pose_covariance.h"
 #include "services/recogniser/refined/prepared_head.h"
 #include "services/recogniser/refined/refined_config.h"
 #include "services/recogniser/refined/working_pair.h"
@@ -32,6 +33,7 @@ class RefinedEstimator final : public Estimator {
   void Reset() override;
   void SetFeedforward(FeedforwardMode mode) override { settings_.feedforward = mode; }
   void SetSearchSpace(const SearchSpace& space) override;
+  void SetEffort(const Effort& effort) override { effort_ = effort; }
   const std::array<ColorModel, 2>& colors() const { return colors_; }
   const FaceTexture& texture() const { return texture_; }
   /// Whether the face that is looked for is the enrolled one.
@@ -76,6 +78,8 @@ class RefinedEstimator final : public Estimator {
                        int reach_px);
   Candidate Track();
   Candidate Search();
+  /// The same; where several faces are in view and none is known, the one that is wanted.
+  Candidate SearchNearest();
   bool WasRejected(const Vector6d& phi) const;
   void RejectPlaces();
   std::vector<RigidTransform> DistinctPlaces() const;
@@ -110,7 +114,11 @@ class RefinedEstimator final : public Estimator {
   void LearnColors(const RigidTransform& X_CM);
   void MoveAnchor();
 
+  /// @p count lowered to @p share of it, not below @p least.
+  static int Lowered(int count, double share, int least);
+
   RefinedSettings settings_;
+  Effort effort_;
   PreparedHead head_;                      ///< that was looked for first
   std::unique_ptr<PreparedHead> learned_;  ///< in its place, once it was learned
   const RigidTransform X_MR_;              ///< the frame that poses are reported in
@@ -120,6 +128,7 @@ class RefinedEstimator final : public Estimator {
   HeadLearner learner_;
   int learned_heads_{0};
   HeadAnchor anchor_;
+  PoseCovariance covariance_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
   std::array<bool, 2> colors_started_{};
   ColorModel::Counts counts_;

@@ -58,7 +58,9 @@ void RefinedEstimator::Learn(const StereoFrame& frame) {
   if (estimate_.status == TrackStatus::kTracking && !knows_enrolled() &&
       candidate_.refined.texture_ncc > kClearNcc)
     learner_.Add(frame, candidate_.refined.X_CM, colors_);
-  if (estimate_.status != TrackStatus::kTracking || texture_.fixed()) return;
+  if (estimate_.status != TrackStatus::kTracking) return;
+  covariance_.Learn(TowardsCamera(candidate_.refined.X_CM));
+  if (texture_.fixed()) return;
   for (const Band band : {kFineBand, kCoarseBand}) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (view_[i].seen())

@@ -19,6 +19,9 @@ constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;   ///< best places that are verified
 constexpr int kVerifyRounds = 2;
+constexpr int kMostFaces = 4;          ///< that are told apart by search.nearest_to
+constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
+constexpr int kFewestShots = 100, kFewestEvaluations = 20;  ///< where the clock lowers them
 
 bool AreOnePlace(const RigidTransform& a, const RigidTransform& b) {
   return (a.translation() - b.translation()).norm() < kSamePlace_m &&
@@ -48,9 +51,11 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     });
   };
   population_.Evaluate(fitness);
-  population_.Shoot(settings_.refined.search_shots, shot_fitness);
-  const int until = estimate_.evaluations + settings_.refined.search_evaluations;
-  const int most = estimate_.generations + settings_.refined.search_evaluations / 10;
+  const RefinedConfig& r = settings_.refined;
+  population_.Shoot(Lowered(r.search_shots, effort_.searching, kFewestShots), shot_fitness);
+  const int evaluations = Lowered(r.search_evaluations, effort_.searching, kFewestEvaluations);
+  const int until = estimate_.evaluations + evaluations;
+  const int most = estimate_.generations + evaluations / 10;
   while (estimate_.evaluations < until && estimate_.generations < most) {
     population_.Reproduce(fitness);
     ++estimate_.generations;
@@ -59,6 +64,34 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
   RefineStarts(DistinctPlaces());
   if (const auto known = KnownAmongCandidates()) return *known;
   return Recognise(BestVerified());
+}
+
+// Each face found is put aside until no other is found. The learned colours and the maps are those
+// of the face taken.
+RefinedEstimator::Candidate RefinedEstimator::SearchNearest() {
+  Candidate found = Search();
+  if (!settings_.nearest_to_m || texture_.learned()) return found;
+  const auto distance = [&](const Candidate& candidate) {
+    return (candidate.refined.X_CM * X_MR_.translation() - *settings_.nearest_to_m).norm();
+  };
+  const auto colors_at_start = colors_before_;
+  auto colors_nearest = colors_;
+  Candidate nearest = found;
+  for (int k = 1; k < kMostFaces && IsFace(found); ++k) {
+    rejected_.push_back(found.refined.X_CM.translation());
+    colors_ = colors_at_start;
+    BuildMaps(nullptr);
+    population_.Restart();
+    found = Search();
+    if (!IsFace(found) || distance(found) >= distance(nearest)) continue;
+    nearest = found;
+    colors_nearest = colors_;
+  }
+  if (!IsFace(nearest)) return nearest;
+  colors_before_ = colors_at_start;
+  colors_ = colors_nearest;
+  BuildMaps(&nearest.refined.X_CM);
+  return nearest;
 }
 
 bool RefinedEstimator::WasRejected(const Vector6d& phi) const {
@@ -84,13 +117,14 @@ void RefinedEstimator::RejectPlaces() {
 
 std::vector<RigidTransform> RefinedEstimator::DistinctPlaces() const {
   std::vector<RigidTransform> places;
+  const int most = Lowered(settings_.refined.search_starts, effort_.searching, 1);
   for (const Individual& individual : population_.individuals()) {
     const RigidTransform X = TransformFromPhi(individual.phi);
     if (std::any_of(places.begin(), places.end(),
                     [&](const RigidTransform& other) { return AreOnePlace(other, X); }))
       continue;
     places.push_back(X);
-    if (static_cast<int>(places.size()) == settings_.refined.search_starts) break;
+    if (static_cast<int>(places.size()) == most) break;
   }
   return places;
 }
@@ -109,7 +143,7 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
     };
     consider(places[i].linear());
     consider(Eigen::Matrix3d::Identity());
-    if (i >= kTurnedPlaces) continue;
+    if (i >= kTurnedPlaces || effort_.searching < kLittleEffort) continue;
     for (const double turn : {kTurn_rad, -kTurn_rad}) {
       consider(RotationFromAngles({0, turn, 0}));
       consider(RotationFromAngles({0, 0, turn}));

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace visavis {
@@ -9,6 +11,7 @@ namespace {
 
 constexpr double kPixelsPerM = 800;
 constexpr int kBoxGrid = 16;
+constexpr int kLeastPicture_px = 16;
 
 int HalvingsFor(const Pinhole& camera, double distance_m) {
   const double ratio = camera.fx / (distance_m * kPixelsPerM);
@@ -52,6 +55,18 @@ ImageView Halve(const ImageView& from, std::vector<std::uint8_t>* memory) {
   return to;
 }
 
+void RequireSize(const std::string& eye, const Pinhole& camera, int halvings) {
+  const int least = kLeastPicture_px << std::min(halvings, 20);
+  for (const auto& [field, value] :
+       {std::pair("width", camera.width), std::pair("height", camera.height)}) {
+    if (value >= least) continue;
+    std::string rule = ": must be " + std::to_string(least) + " px or more";
+    if (halvings > 0) rule += " where fx is " + std::to_string(std::lround(camera.fx)) + " px";
+    throw std::invalid_argument("rig: " + eye + "." + field + ": " + std::to_string(value) + rule +
+                                " for estimator refined");
+  }
+}
+
 int Down(double px, int limit) {
   return std::clamp(static_cast<int>(std::floor(px / kBoxGrid)) * kBoxGrid, 0, limit);
 }
@@ -61,7 +76,10 @@ int Down(double px, int limit) {
 WorkingPair::WorkingPair(const StereoRig& rig, double distance_m)
     : halvings_(HalvingsFor(rig.right, distance_m)),
       eyes_{EyeGeometry(Halved(rig.right, halvings_), RigidTransform::Identity()),
-            EyeGeometry(Halved(rig.left, halvings_), rig.X_CL)} {}
+            EyeGeometry(Halved(rig.left, halvings_), rig.X_CL)} {
+  RequireSize("right", rig.right, halvings_);
+  RequireSize("left", rig.left, halvings_);
+}
 
 std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::size_t i) {
   std::optional<ImageView> picture = i == 0 ? frame.right : frame.left;

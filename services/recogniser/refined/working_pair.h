@@ -18,6 +18,8 @@ inline constexpr int kLeastBox_px = 32;        ///< a smaller part of a picture 
 class WorkingPair {
  public:
   /// @p distance_m: where the head is expected.
+  /// @throws std::invalid_argument naming camera, field, value and rule for pictures that are too
+  /// small at that resolution.
   WorkingPair(const StereoRig& rig, double distance_m);
 
   int halvings() const { return halvings_; }

@@ -105,6 +105,20 @@ TEST_F(LogBusTest, WithoutAWriterPublishingIsDropped) {
   EXPECT_NO_THROW(bus.Publish("A", head_pose_t{}));
 }
 
+TEST_F(LogBusTest, AWriterThatComesLaterGetsWhatIsPublishedFromThenOn) {
+  EventLogWriter writer(folder_ / "out.lcm", EventLogWriter::Mode::kCreate);
+  LogBus bus("", &clock_, nullptr);
+  bus.Publish("A", head_pose_t{});
+  bus.SetWriter(&writer);
+  bus.Publish("B", head_pose_t{});
+  writer.Close();
+  EventLogReader reader(folder_ / "out.lcm");
+  LogEvent event;
+  ASSERT_TRUE(reader.Next(&event));
+  EXPECT_EQ(event.channel, "B");
+  EXPECT_FALSE(reader.Next(&event));
+}
+
 TEST_F(LogBusTest, AFullDiskIsARecordError) {
   EventLogWriter writer("/dev/full", EventLogWriter::Mode::kReplace);
   LogBus bus("", &clock_, &writer);

@@ -82,6 +82,22 @@ TEST_F(LabelledMeshTest, AMaterialThatNamesNoPartOfAHeadIsRefused) {
                                                          HasSubstr("must contain skin"))));
 }
 
+TEST_F(LabelledMeshTest, AScaleThatPutsVerticesOutOfReachIsRefused) {
+  const std::string file = WriteObj();
+  for (const double scale : {1e3, 1e9, 1e300}) {
+    MeshFileOptions options;
+    options.scale = scale;
+    EXPECT_THAT([&] { LoadLabelledMesh(file, options); },
+                ThrowsMessage<std::invalid_argument>(
+                    AllOf(HasSubstr(file), HasSubstr("finite coordinates within 10000 m"),
+                          HasSubstr("is the scale right?"))))
+        << scale;
+  }
+  MeshFileOptions options;
+  options.scale = 100;
+  EXPECT_NO_THROW(LoadLabelledMesh(file, options));
+}
+
 TEST_F(LabelledMeshTest, ACornerThatIsNotThereIsRefused) {
   const std::string file = WriteObj("f 1 2 99");
   EXPECT_THROW(LoadLabelledMesh(file, {}), std::invalid_argument);

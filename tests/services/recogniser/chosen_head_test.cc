@@ -75,6 +75,21 @@ TEST(ChosenHeadTest, EyesBesideTheSphereAreRefused) {
               ::testing::ThrowsMessage<FieldError>(HasSubstr("must have its eyes in front")));
 }
 
+TEST(ChosenHeadTest, ASphereThatHardlyHoldsThePointBehindItsEyesIsRefusedByItsKey) {
+  HeadChoice choice;
+  choice.shape = "sphere";
+  HeadModelConfig sizes;
+  for (const double radius_mm : {51.0, 54.0, 56.5}) {
+    sizes.radius_mm = radius_mm;
+    EXPECT_THAT([&] { ChosenHead(choice, sizes); },
+                ::testing::ThrowsMessage<FieldError>(
+                    AllOf(HasSubstr("refined.head.shape"), HasSubstr("head.radius_mm"))))
+        << radius_mm;
+  }
+  sizes.radius_mm = 58;
+  EXPECT_NO_THROW(ChosenHead(choice, sizes));
+}
+
 class HeadOfFileTest : public ::testing::Test {
  protected:
   void ExpectRefused(const HeadChoice& choice, const std::string& what) {

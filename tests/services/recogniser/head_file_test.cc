@@ -111,6 +111,41 @@ TEST_F(HeadFileTest, AnEnrolledFaceIsReadBackToAThousandth) {
   }
 }
 
+TEST_F(HeadFileTest, WhatCouldNotBeReadBackIsNotWritten) {
+  HeadGeometry good;
+  LearnedFace face;
+  face.points.assign(100, {0, 0.02f, -0.08f});
+  for (auto& value : face.value) value.assign(100, 1);
+  good.face = face;
+  SaveHeadFile(name_, good);
+  EXPECT_EQ(LoadHeadFile(name_).face->points.size(), 100u);
+  const auto expect_refusal = [&](const HeadGeometry& head, const char* key, const char* rule) {
+    EXPECT_THAT([&] { SaveHeadFile(name_, head); },
+                ::testing::ThrowsMessage<std::invalid_argument>(
+                    AllOf(HasSubstr("head.yaml: is not written"), HasSubstr(key), HasSubstr(rule))))
+        << key;
+    EXPECT_NO_THROW(LoadHeadFile(name_)) << key;  // the earlier one is still there
+  };
+  HeadGeometry bad = good;
+  bad.face->points.pop_back();
+  for (auto& value : bad.face->value) value.pop_back();
+  expect_refusal(bad, "face_points_mm", "100 to 5000 points");
+  bad = good;
+  bad.face->value[kFineBand][7] = 255.5f;
+  expect_refusal(bad, "face_fine", "-255 to 255");
+  bad = good;
+  bad.face->value[kCoarseBand][99] = std::nanf("");
+  expect_refusal(bad, "face_coarse", "-255 to 255");
+  bad = good;
+  bad.p_MR_m.x() = 1.1;
+  expect_refusal(bad, "origin_mm", "-1000 to 1000 mm");
+  HeadShape shape;
+  shape.eye_x = 0.07f;
+  bad = good;
+  bad.surface = HeadSurface(shape);
+  expect_refusal(bad, "eye_x_mm", "10 to 60 mm");
+}
+
 TEST_F(HeadFileTest, AHeadWithoutAFaceIsReadBackWithoutOne) {
   SaveHeadFile(name_, HeadGeometry{});
   EXPECT_FALSE(LoadHeadFile(name_).face);

@@ -9,6 +9,7 @@
 #include "common/bus/channels.h"
 #include "common/convert/pose_message.h"
 #include "common/convert/rig_message.h"
+#include "common/rigs/rig_file.h"
 #include "tests/services/recogniser/service_bench.h"
 #include "tests/support/log_writing.h"
 
@@ -76,6 +77,69 @@ TEST_P(LogPlayerTest, KnowsTheMotionBetweenPairsThatHaveIt) {
     ASSERT_TRUE(pair->step.known) << i;
     EXPECT_NEAR(pair->step.X_C2C1.translation().x(), -0.01, 1e-9) << i;
   }
+}
+
+/// Recordings that are read as the recogniser's settings say.
+class ConfiguredLogTest : public ::testing::Test {
+ protected:
+  /// Two pairs and their camera poses on channels of @p config, and a rig where @p with_rig.
+  void Write(const RecogniserChannels& channels, bool with_rig) {
+    EventLogWriter writer(path_, EventLogWriter::Mode::kReplace);
+    if (with_rig) {
+      WriteMessage(channels.stereo_rig, ToMessage({TinyRig(), std::nullopt, std::nullopt}, kBaseUs),
+                   &writer);
+    }
+    for (int pair = 1; pair <= 2; ++pair) {
+      const RigidTransform X_WC =
+          MakeTransform(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.01 * pair, 0, 0));
+      WriteMessage(channels.camera_pose, ToMessage(X_WC, kBaseUs + pair * kPeriod_us), &writer);
+      WriteMessage(channels.stereo_images, PairAt(pair * kPeriod_us, TinyRig()), &writer);
+    }
+    writer.Close();
+  }
+  /// Reads the two pairs. @return the step between them.
+  CameraStep StepBetweenPairs() {
+    LogPlayer player(path_, config_);
+    EXPECT_NE(player.Next(), nullptr);
+    const LogPlayer::Pair* second = player.Next();
+    EXPECT_NE(second, nullptr);
+    return second ? second->step : CameraStep{};
+  }
+
+  TemporaryFolder folder_;
+  const std::string path_ = folder_ / "recording.lcm", rig_ = folder_ / "rig.yaml";
+  RecogniserConfig config_;
+};
+
+TEST_F(ConfiguredLogTest, ChannelsOfOtherNamesAreRead) {
+  config_.channels.stereo_images = "EYES";
+  config_.channels.stereo_rig = "EYES_RIG";
+  config_.channels.camera_pose = "EYES_POSE";
+  Write(config_.channels, true);
+  EXPECT_TRUE(StepBetweenPairs().known);
+  EXPECT_THROW(LogPlayer{path_}, std::runtime_error);
+}
+
+TEST_F(ConfiguredLogTest, EgoMotionNoneLeavesTheRecordedMotionAside) {
+  Write({}, true);
+  EXPECT_GT(StepBetweenPairs().X_C2C1.translation().norm(), 0.009);
+  config_.ego_motion = "none";
+  EXPECT_LT(StepBetweenPairs().X_C2C1.translation().norm(), 1e-12);
+}
+
+TEST_F(ConfiguredLogTest, ARigFileStandsInWhereTheRecordingHoldsNone) {
+  Write({}, false);
+  EXPECT_THAT([&] { LogPlayer(path_, config_); },
+              ::testing::ThrowsMessage<std::runtime_error>(::testing::AllOf(
+                  ::testing::HasSubstr("STEREO_RIG"), ::testing::HasSubstr("rig_file"))));
+  StereoRig rig = TinyRig();
+  rig.right.fx = 81;
+  SaveRigFile({rig, std::nullopt, std::nullopt}, rig_);
+  config_.rig_file = rig_;
+  EXPECT_EQ(LogPlayer(path_, config_).rig().right.fx, 81);
+  EXPECT_TRUE(StepBetweenPairs().known);
+  Write({}, true);  // its own comes first
+  EXPECT_EQ(LogPlayer(path_, config_).rig().right.fx, TinyRig().right.fx);
 }
 
 }  // namespace

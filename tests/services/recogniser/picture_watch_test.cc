@@ -52,6 +52,16 @@ TEST_F(PictureWatchTest, ARepeatedPictureIsTakenOutWhereTheOtherChanges) {
   EXPECT_EQ(watch_.complaint(), "");
 }
 
+TEST_F(PictureWatchTest, ForgettingTakesTheComplaintBackAndKeepsTheCount) {
+  const OwnedImage stuck = NewPicture(), first = NewPicture(), second = NewPicture();
+  Show(first, stuck);
+  Show(second, stuck);
+  ASSERT_NE(watch_.complaint(), "");
+  watch_.Forget();
+  EXPECT_EQ(watch_.complaint(), "");
+  EXPECT_EQ(watch_.num_stale_left(), 1);
+}
+
 TEST_F(PictureWatchTest, AStillPictureOfBothIsNoFault) {
   const OwnedImage right = NewPicture(), left = NewPicture();
   for (int i = 0; i < 5; ++i) {

@@ -83,7 +83,7 @@ std::int64_t CounterOf(const service_status_t& status, const std::string& name) 
 }
 
 ServiceBench::ServiceBench(const RecogniserConfig& config, const std::string& prefix,
-                           std::int64_t clock_offset_us)
+                           std::int64_t clock_offset_us, bool live)
     : offset_us_(kBaseUs + clock_offset_us),
       writer_(folder_ / "out.lcm", EventLogWriter::Mode::kReplace),
       bus_(prefix, &clock_, &writer_),
@@ -93,7 +93,7 @@ ServiceBench::ServiceBench(const RecogniserConfig& config, const std::string& pr
     status_.Rejected(channel + ": " + reason, clock_.NowUs());
   });
   service_ =
-      std::make_unique<RecogniserService>(config, ServiceContext{&bus_, &clock_, &status_, false});
+      std::make_unique<RecogniserService>(config, ServiceContext{&bus_, &clock_, &status_, live});
 }
 
 ServiceBench::~ServiceBench() = default;

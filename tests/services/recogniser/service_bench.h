@@ -40,7 +40,7 @@ std::int64_t CounterOf(const service_status_t& status, const std::string& name);
 class ServiceBench {
  public:
   explicit ServiceBench(const RecogniserConfig& config, const std::string& prefix = "",
-                        std::int64_t clock_offset_us = 0);
+                        std::int64_t clock_offset_us = 0, bool live = false);
   ~ServiceBench();
 
   /// Delivers a message at @p t_us of the log, after the wakes that fall due before it.

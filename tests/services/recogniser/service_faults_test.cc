@@ -14,12 +14,14 @@ using ::testing::Not;
 
 class ServiceFaultsTest : public ::testing::Test {
  protected:
-  ServiceFaultsTest() : scene_(TestRig()), bench_(Config()) {
+  explicit ServiceFaultsTest(int confirm_frames = 1)
+      : scene_(TestRig()), bench_(Config(confirm_frames)) {
     bench_.SendRig({TestRig(), std::nullopt, std::nullopt});
   }
-  static RecogniserConfig Config() {
+  static RecogniserConfig Config(int confirm_frames) {
     RecogniserConfig config;
     config.ego_motion = "none";
+    config.refined.evidence.confirm_frames = confirm_frames;
     return config;
   }
   /// A pair with noise of its own, the head at @p phi.
@@ -60,6 +62,38 @@ TEST_F(ServiceFaultsTest, SwappedEyesAreToldAndNeverTracked) {
   EXPECT_EQ(status.state, service_status_t::STATE_DEGRADED);
   EXPECT_GT(CounterOf(status, "pairs_with_swapped_images"), 0);
   for (int i = 0; i < 3; ++i) Send(Pair(place_));  // mended
+  EXPECT_EQ(Send(Pair(place_)).status, head_pose_t::STATUS_TRACKING);
+  EXPECT_EQ(bench_.Status().state, service_status_t::STATE_RUNNING);
+}
+
+TEST_F(ServiceFaultsTest, AResetTakesTheComplaintsBack) {
+  Send(Pair(place_));
+  const images_t stuck = Pair(place_);
+  Send(stuck);
+  images_t pair = Pair(place_);
+  pair.images[0] = stuck.images[0];
+  Send(pair);
+  ASSERT_EQ(bench_.Status().state, service_status_t::STATE_DEGRADED);
+  recogniser_command_t reset{};
+  reset.reset = true;
+  bench_.Send("RECOGNISER_COMMAND", reset, 33'333 * frames_);
+  EXPECT_EQ(bench_.Status().state, service_status_t::STATE_RUNNING);
+}
+
+class SlowFaultsTest : public ServiceFaultsTest {
+ protected:
+  SlowFaultsTest() : ServiceFaultsTest(3) {}
+};
+
+// The exchanged pair is searched from nothing each time: one good frame must do there.
+TEST_F(SlowFaultsTest, SwappedEyesAreToldThoughAFaceMustBeSeenSeveralTimes) {
+  for (int i = 0; i < 20; ++i) {
+    images_t pair = Pair(place_);
+    std::swap(pair.image_types[0], pair.image_types[1]);
+    EXPECT_NE(Send(pair).status, head_pose_t::STATUS_TRACKING);
+  }
+  EXPECT_THAT(bench_.Status().last_error, HasSubstr("left and right camera are swapped"));
+  for (int i = 0; i < 2; ++i) EXPECT_NE(Send(Pair(place_)).status, head_pose_t::STATUS_TRACKING);
   EXPECT_EQ(Send(Pair(place_)).status, head_pose_t::STATUS_TRACKING);
   EXPECT_EQ(bench_.Status().state, service_status_t::STATE_RUNNING);
 }

@@ -75,6 +75,9 @@ TEST_F(EnrolToolTest, ALogWithoutPairsIsRefused) {
 TEST_F(EnrolToolTest, ALogWithoutARigFailsByTheChannelsName) {
   EXPECT_THAT(Refusal({WallLog(3, false), "-o", head_}, 1),
               AllOf(HasSubstr("wall.lcm"), HasSubstr("STEREO_RIG")));
+  // The channel is the settings'.
+  EXPECT_THAT(Refusal({log_, "-o", head_, "--set", "channels.stereo_rig=MY_RIG"}, 1),
+              HasSubstr("MY_RIG"));
 }
 
 TEST_F(EnrolToolTest, WhatIsNoLogFailsByItsName) {

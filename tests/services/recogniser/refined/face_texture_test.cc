@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/core/random.h"
+#include "tests/support/malloc_counter.h"
 #include "tests/support/mesh_scene.h"
 
 namespace visavis {
@@ -37,7 +38,7 @@ TEST(FaceTextureTest, BeginsWithTheGenericPointsAndKnowsNothing) {
   const FaceTexture texture(Face());
   EXPECT_FALSE(texture.learned());
   EXPECT_EQ(texture.points().points, Face().points);
-  for (const unsigned char known : texture.known()) EXPECT_FALSE(known);
+  for (const unsigned char known : texture.known(kFineBand)) EXPECT_FALSE(known);
 }
 
 TEST(FaceTextureTest, TheFirstSightIsTakenAsItIs) {
@@ -69,7 +70,8 @@ TEST(FaceTextureTest, LearnsTheMean) {
     for (std::size_t i = 0; i < face.size(); ++i) noisy[i] += face[i];
     texture.Learn(kFineBand, SamplesOf(noisy));
   }
-  const GainOffset fit = FitPattern(SamplesOf(face), texture.pattern(kFineBand), texture.known());
+  const GainOffset fit =
+      FitPattern(SamplesOf(face), texture.pattern(kFineBand), texture.known(kFineBand));
   // One sight correlates with 10 / sqrt(10^2 + 4^2) = 0.93, the mean of sixty nearly wholly.
   EXPECT_GT(fit.correlation, 0.995);
 }
@@ -108,7 +110,8 @@ TEST(FaceTextureTest, ANewFaceReplacesTheOldOneInTheEnd) {
   const std::vector<float> other = RandomValues(2);
   for (std::size_t i = 0; i < mixed.size() / 4; ++i) mixed[i] = other[i];  // a grown beard, say
   for (int i = 0; i < 1000; ++i) texture.Learn(kFineBand, SamplesOf(mixed));
-  const GainOffset fit = FitPattern(SamplesOf(mixed), texture.pattern(kFineBand), texture.known());
+  const GainOffset fit =
+      FitPattern(SamplesOf(mixed), texture.pattern(kFineBand), texture.known(kFineBand));
   EXPECT_GT(fit.correlation, 0.98);
 }
 
@@ -117,7 +120,45 @@ TEST(FaceTextureTest, PointsNotSeenStayUnknown) {
   FaceSamples half = SamplesOf(RandomValues(1));
   for (std::size_t i = 0; i < Face().size(); i += 2) half.seen[i] = 0;
   texture.Learn(kFineBand, half);
-  for (std::size_t i = 0; i < Face().size(); ++i) EXPECT_EQ(texture.known()[i] != 0, i % 2 == 1);
+  for (std::size_t i = 0; i < Face().size(); ++i)
+    EXPECT_EQ(texture.known(kFineBand)[i] != 0, i % 2 == 1);
+}
+
+TEST(FaceTextureTest, APointSeenInOneBandAloneIsKnownThereAndNotLearned) {
+  FaceTexture texture(Face());
+  texture.Learn(kFineBand, SamplesOf(RandomValues(1)));
+  FaceSamples half = SamplesOf(RandomValues(1));
+  for (std::size_t i = 0; i < Face().size(); i += 2) half.seen[i] = 0;
+  texture.Learn(kCoarseBand, half);
+  for (std::size_t i = 0; i < Face().size(); ++i) {
+    EXPECT_TRUE(texture.known(kFineBand)[i]);
+    EXPECT_EQ(texture.known(kCoarseBand)[i] != 0, i % 2 == 1);
+  }
+  // Points without a value would spoil the agreement of those with one.
+  const FaceSamples all = SamplesOf(RandomValues(1));
+  const auto& pattern = texture.pattern(kCoarseBand);
+  EXPECT_GT(FitPattern(all, pattern, texture.known(kCoarseBand)).correlation, 0.999);
+  EXPECT_LT(FitPattern(all, pattern, texture.known(kFineBand)).correlation, 0.9);
+  EXPECT_EQ(texture.Learned().points.size(), Face().size() / 2);
+}
+
+TEST(FaceTextureTest, ForgettingAndRememberingAllocateNothingOnceDone) {
+  if (NumMallocs() < 0) GTEST_SKIP() << "mallocs cannot be counted under a sanitizer";
+  FaceTexture texture(Face());
+  LearnedFace face;
+  face.points.assign(2 * Face().size(), {0, 0, -0.08f});  // more than the generic one has
+  face.normals.assign(face.points.size(), {0, 0, -1});
+  for (auto& value : face.value) value.assign(face.points.size(), 1);
+  const auto change = [&] {
+    texture.Remember(face);
+    EXPECT_EQ(texture.points().points.size(), face.points.size());
+    texture.Forget();
+    EXPECT_EQ(texture.points().points.size(), Face().size());
+  };
+  change();
+  const std::int64_t before = NumMallocs();
+  change();
+  EXPECT_EQ(NumMallocs(), before);
 }
 
 TEST(FaceTextureTest, ASightOfTooFewKnownPointsIsLeftOut) {
@@ -153,7 +194,7 @@ TEST(FaceTextureTest, ForgetGivesTheGenericPointsBackAndTheNextFaceIsTakenAsItIs
   EXPECT_FALSE(texture.learned());
   EXPECT_EQ(texture.points().points, Face().points);
   EXPECT_EQ(texture.points().normals, Face().normals);
-  for (const unsigned char known : texture.known()) EXPECT_FALSE(known);
+  for (const unsigned char known : texture.known(kFineBand)) EXPECT_FALSE(known);
   const std::vector<float> other = RandomValues(2);
   for (const Band band : {kFineBand, kCoarseBand}) {
     texture.Learn(band, SamplesOf(other));
@@ -225,7 +266,7 @@ TEST(FaceTextureTest, ForgetEndsAnEnrolment) {
   EXPECT_FALSE(texture.fixed());
   EXPECT_FALSE(texture.learned());
   EXPECT_EQ(texture.points().points, Face().points);
-  EXPECT_EQ(texture.known().size(), Face().size());
+  EXPECT_EQ(texture.known(kFineBand).size(), Face().size());
   EXPECT_TRUE(texture.Learned().points.empty());
   const std::vector<float> other = RandomValues(4);
   texture.Learn(kFineBand, SamplesOf(other));

@@ -72,17 +72,18 @@ TEST_F(OcclusionTest, AFaceThatIsNowhereAsLearnedIsNotExplainedAway) {
   Hide([](const Eigen::Vector3f&) { return true; });
   EXPECT_EQ(HideOccluded(texture_, kFineBand, &samples_), 0);
   EXPECT_EQ(samples_.seen, before.seen);
-  const GainOffset fit = FitPattern(samples_, texture_.pattern(kFineBand), texture_.known());
+  const GainOffset fit =
+      FitPattern(samples_, texture_.pattern(kFineBand), texture_.known(kFineBand));
   EXPECT_LT(fit.correlation, 0.3);
 }
 
 TEST_F(OcclusionTest, ThePictureOfAHalfHiddenFaceFitsOnceTheHandIsLeftOut) {
   Hide([](const Eigen::Vector3f& p) { return p.x() > 0; });
   const double before =
-      FitPattern(samples_, texture_.pattern(kFineBand), texture_.known()).correlation;
+      FitPattern(samples_, texture_.pattern(kFineBand), texture_.known(kFineBand)).correlation;
   HideOccluded(texture_, kFineBand, &samples_);
   const double after =
-      FitPattern(samples_, texture_.pattern(kFineBand), texture_.known()).correlation;
+      FitPattern(samples_, texture_.pattern(kFineBand), texture_.known(kFineBand)).correlation;
   EXPECT_LT(before, 0.85);
   EXPECT_GT(after, 0.95);
 }

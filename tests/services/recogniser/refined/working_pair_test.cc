@@ -1,5 +1,6 @@
 #include "services/recogniser/refined/working_pair.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/core/random.h"
@@ -91,6 +92,23 @@ TEST(WorkingPairTest, PicturesAreHalvedUntilAPixelIsAboutOneAndAQuarterMillimetr
 }
 
 // Four pixels centred at 2 i, 2 i + 1 become one centred at i: u' + 1/2 = (u + 1/2) / 2.
+TEST(WorkingPairTest, PicturesThatAreTooSmallAtThatResolutionAreRefusedByCameraAndField) {
+  const auto expect_refusal = [](const StereoRig& rig, const std::string& what) {
+    EXPECT_THAT([&] { WorkingPair(rig, 1); },
+                ::testing::ThrowsMessage<std::invalid_argument>(::testing::HasSubstr(what)));
+  };
+  StereoRig rig = TestRig();
+  rig.right.width = 15;
+  expect_refusal(rig, "rig: right.width: 15: must be 16 px or more for estimator refined");
+  rig.right.width = 16;
+  EXPECT_NO_THROW(WorkingPair(rig, 1));
+  rig.left.height = 8;
+  expect_refusal(rig, "rig: left.height: 8: must be 16 px or more");
+  rig = TestRig();
+  rig.right.fx = 100'000;  // seven halvings
+  expect_refusal(rig, "rig: right.width: 640: must be 2048 px or more where fx is 100000 px");
+}
+
 TEST(WorkingPairTest, ProjectionIntoHalvedPicturesKeepsThePixelsCentres) {
   const StereoRig rig = FourTimes(UnevenRig());
   const WorkingPair pair(rig, 0.6);
@@ -111,22 +129,22 @@ TEST(WorkingPairTest, AHalvedPixelIsTheRoundedMeanOfFour) {
   StereoRig rig = SmallRig();
   for (Pinhole* camera : {&rig.right, &rig.left}) {
     camera->width = 38;  // 38 halves to 19: odd sizes too
-    camera->height = 26;
+    camera->height = 38;
   }
   WorkingPair pair(rig, 0.25);
   ASSERT_EQ(pair.halvings(), 1);
   Random random(4);
-  const OwnedImage rgb = NoiseImage(38, 26, &random), gray = GrayImage(rgb.view);
+  const OwnedImage rgb = NoiseImage(38, 38, &random), gray = GrayImage(rgb.view);
   for (const OwnedImage* image : {&rgb, &gray}) {
     const int channels = BytesPerPixel(image->view.format);
     const std::optional<ImageView> half = pair.Picture({0, image->view, std::nullopt}, 0);
     ASSERT_TRUE(half);
     ASSERT_EQ(half->width, 19);
-    ASSERT_EQ(half->height, 13);
+    ASSERT_EQ(half->height, 19);
     EXPECT_EQ(half->format, image->view.format);
     EXPECT_EQ(half->stride, 19 * channels);
-    EXPECT_EQ(half->size, static_cast<std::size_t>(19 * 13 * channels));
-    for (int y = 0; y < 13; ++y) {
+    EXPECT_EQ(half->size, static_cast<std::size_t>(19 * 19 * channels));
+    for (int y = 0; y < 19; ++y) {
       for (int i = 0; i < 19 * channels; ++i) {
         const int x = i / channels * 2 * channels + i % channels;
         const std::uint8_t *a = image->view.row(2 * y), *b = image->view.row(2 * y + 1);
@@ -140,15 +158,15 @@ TEST(WorkingPairTest, AHalvedPixelIsTheRoundedMeanOfFour) {
 TEST(WorkingPairTest, TwiceHalvedIsTheMeanOfSixteen) {
   StereoRig rig = TestRig();
   rig.right.width = rig.left.width = 64;
-  rig.right.height = rig.left.height = 32;
+  rig.right.height = rig.left.height = 64;
   WorkingPair pair(rig, 0.25);
   ASSERT_EQ(pair.halvings(), 2);
   Random random(5);
-  const OwnedImage image = NoiseImage(64, 32, &random);
+  const OwnedImage image = NoiseImage(64, 64, &random);
   const std::optional<ImageView> small = pair.Picture({0, std::nullopt, image.view}, 1);
   ASSERT_TRUE(small);
   ASSERT_EQ(small->width, 16);
-  for (int y = 0; y < 8; ++y) {
+  for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 16; ++x) {
       double sum = 0;
       for (int k = 0; k < 16; ++k) sum += image.view.row(4 * y + k / 4)[3 * (4 * x + k % 4) + 1];
@@ -160,9 +178,9 @@ TEST(WorkingPairTest, TwiceHalvedIsTheMeanOfSixteen) {
 TEST(WorkingPairTest, BothEyesKeepTheirOwnHalvedPictures) {
   StereoRig rig = TestRig();
   rig.right.width = rig.left.width = 64;
-  rig.right.height = rig.left.height = 32;
+  rig.right.height = rig.left.height = 64;
   WorkingPair pair(rig, 0.25);
-  const OwnedImage dark = FlatImage(64, 32, 10, 10, 10), bright = FlatImage(64, 32, 200, 200, 200);
+  const OwnedImage dark = FlatImage(64, 64, 10, 10, 10), bright = FlatImage(64, 64, 200, 200, 200);
   const StereoFrame frame{0, dark.view, bright.view};
   const std::optional<ImageView> right = pair.Picture(frame, 0), left = pair.Picture(frame, 1);
   EXPECT_EQ(right->row(3)[5], 10);
