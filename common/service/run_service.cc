@@ -1,5 +1,6 @@
 #include "common/service/run_service.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -27,10 +28,17 @@ void RequireAnotherFile(const ServiceFlags& flags) {
   throw std::invalid_argument("--record " + flags.record + ": must be another file than --replay");
 }
 
+// In the status a service is called arm_state where its program is visavis-arm-state.
+std::string StatusName(const ServiceTraits& traits) {
+  std::string name = traits.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
 int RunOffline(const ServiceTraits& traits, const ServiceFlags& flags, const StopSignal& stop,
                const ServiceFactory& make_service, Replay::Filter filter) {
   ManualClock clock;
-  StatusReporter status(traits.name, kVersion);
+  StatusReporter status(StatusName(traits), kVersion);
   std::optional<EventLogReader> reader;
   if (!flags.replay.empty()) reader.emplace(flags.replay);
   RequireAnotherFile(flags);
@@ -71,7 +79,7 @@ int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags,
     return RunOffline(traits, flags, stop, make_service, std::move(filter));
   }
   const SystemClock clock;
-  StatusReporter status(traits.name, kVersion);
+  StatusReporter status(StatusName(traits), kVersion);
   LcmBus bus(flags.lcm_url, flags.prefix);
   TellStatusOfRejects(&bus, &status, &clock);
   const auto service = make_service({&bus, &clock, &status, true});

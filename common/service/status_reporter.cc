@@ -46,6 +46,8 @@ StatusReporter::StatusReporter(const std::string& service, const std::string& ve
   message_.host = HostName();
   message_.pid = getpid();
   message_.state = service_status_t::STATE_STARTING;
+  message_.clock_state = service_status_t::CLOCK_UNKNOWN;
+  message_.clock_offset_s = std::nan("");
   latencies_ms_.reserve(kMaxLatencies);
 }
 

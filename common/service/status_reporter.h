@@ -32,6 +32,9 @@ class StatusReporter {
   std::int64_t processed() const { return message_.processed; }
   std::int64_t rejected() const { return message_.rejected; }
   const std::string& last_error() const { return message_.last_error; }
+  /// Of the host's clock at the last Make(), as in service_status_t; before: unknown.
+  std::int8_t clock_state() const { return message_.clock_state; }
+  double clock_offset_s() const { return message_.clock_offset_s; }
 
   /// The status of the time since the last call.
   const service_status_t& Make(std::int64_t now_us);

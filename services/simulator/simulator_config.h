@@ -23,6 +23,7 @@ struct SimulatorConfig {
     a->Visit("arm_rate_hz", &arm_rate_hz, InRange(10.0, 1000.0, "Hz"));
     a->Visit("readout_ms", &readout_ms, InRange(0.0, 100.0, "ms"));
     a->Visit("publish_arm", &publish_arm);
+    a->Visit("arm_channel", &arm_channel, ChannelName());
     a->Visit("publish_camera_pose", &publish_camera_pose);
     a->Visit("image_format", &image_format, OneOf({"raw", "jpeg"}));
     a->Visit("jpeg_quality", &jpeg_quality, InRange(1, 100));
@@ -39,9 +40,10 @@ struct SimulatorConfig {
   std::string rig_file;  ///< rig.yaml with an arm; empty: the demo's
   double frame_rate_hz{30};
   double arm_rate_hz{200};
-  double readout_ms{6};             ///< from mid-exposure to the images on the bus
-  bool publish_arm{true};           ///< ARM_STATE, and the arm in STEREO_RIG
-  bool publish_camera_pose{false};  ///< CAMERA_POSE, one a pair
+  double readout_ms{6};                  ///< from mid-exposure to the images on the bus
+  bool publish_arm{true};                ///< ARM_STATE, and the arm in STEREO_RIG
+  std::string arm_channel{"ARM_STATE"};  ///< SIMULATOR_ARM_STATE: for visavis-arm-state
+  bool publish_camera_pose{false};       ///< CAMERA_POSE, one a pair
   std::string image_format{"raw"};
   int jpeg_quality{90};
   std::string export_mesh;  ///< the subject's head is written there as OBJ; empty: nowhere

@@ -141,7 +141,7 @@ void SimulatorService::PublishArmStates(std::int64_t until_us) {
     arm_state_.seq = next_arm_;
     arm_state_.joint_position.assign(sample.q.data(), sample.q.data() + sample.q.size());
     arm_state_.joint_velocity.assign(sample.qdot.data(), sample.qdot.data() + sample.qdot.size());
-    context_.bus->Publish(kArmStateChannel, arm_state_);
+    context_.bus->Publish(config_.arm_channel, arm_state_);
   }
 }
 

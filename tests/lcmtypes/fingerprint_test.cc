@@ -25,6 +25,11 @@ TEST(FingerprintTest, EqualsBotCores) {
   EXPECT_EQ(static_cast<std::uint64_t>(joint_state_t::getHash()), 0x3e377b4cebc593a4u);
 }
 
+TEST(FingerprintTest, EqualsDrakes) {
+  EXPECT_EQ(static_cast<std::uint64_t>(iiwa_status_t::getHash()), 0xf16fb804284abca3u);
+  EXPECT_EQ(static_cast<std::uint64_t>(panda_status_t::getHash()), 0x19571cdf4d82fae6u);
+}
+
 TEST(FingerprintTest, PixelFormatsEqualBotCores) {
   EXPECT_EQ(image_t::PIXELFORMAT_GRAY, 1497715271);
   EXPECT_EQ(image_t::PIXELFORMAT_RGB, 859981650);
