@@ -1,6 +1,8 @@
 #include "common/rigs/rig_file.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -11,6 +13,15 @@
 
 namespace visavis {
 namespace {
+
+template <std::size_t n>
+Rule<std::array<double, n>> NotNegative() {
+  return {[](const std::array<double, n>& values) {
+            return std::all_of(values.begin(), values.end(),
+                               [](double v) { return v >= 0 && std::isfinite(v); });
+          },
+          "must be " + std::to_string(n) + " numbers >= 0"};
+}
 
 struct CameraFields {
   template <typename A>
@@ -63,6 +74,41 @@ struct ArmFields {
   TransformFields X_WB;
 };
 
+// Standard deviations, in the fields' own units.
+struct CameraUncertaintyFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("fx", &sigma.fx, InRange(0.0, 1e6, "px"));
+    a->Visit("fy", &sigma.fy, InRange(0.0, 1e6, "px"));
+    a->Visit("cx", &sigma.cx, InRange(0.0, 1e6, "px"));
+    a->Visit("cy", &sigma.cy, InRange(0.0, 1e6, "px"));
+    a->Visit("distortion", &sigma.distortion, NotNegative<5>());
+  }
+  CameraUncertainty sigma;
+};
+
+struct PoseUncertaintyFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("p_m", &sigma.p_m, NotNegative<3>());
+    a->Visit("r_rad", &sigma.r_rad, NotNegative<3>());
+  }
+  PoseUncertainty sigma;
+};
+
+struct UncertaintyFields {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("right", &right);
+    a->Visit("left", &left);
+    a->Visit("X_CL", &X_CL);
+    if (has_hand_eye) a->Visit("X_HC", &X_HC);
+  }
+  CameraUncertaintyFields right, left;
+  PoseUncertaintyFields X_CL, X_HC;
+  bool has_hand_eye{true};
+};
+
 struct RigFields {
   template <typename A>
   void Serialize(A* a) {
@@ -71,11 +117,13 @@ struct RigFields {
     a->Visit("X_CL", &X_CL);
     if (has_hand_eye) a->Visit("X_HC", &X_HC);
     if (has_arm) a->Visit("arm", &arm);
+    if (has_uncertainty) a->Visit("uncertainty", &uncertainty);
   }
   CameraFields right, left;
   TransformFields X_CL, X_HC;
   ArmFields arm;
-  bool has_hand_eye{true}, has_arm{true};
+  UncertaintyFields uncertainty;
+  bool has_hand_eye{true}, has_arm{true}, has_uncertainty{true};
 };
 
 using ReadFile = std::function<std::string(const std::string&)>;
@@ -115,6 +163,12 @@ RigDescription FromFields(const RigFields& fields, const YAML::Node& root,
     if (urdf.empty()) throw FieldError("arm.urdf", fields.arm.urdf, "is empty");
     description.arm = ArmDescription{urdf, fields.arm.base, fields.arm.tip,
                                      fields.arm.X_WB.ToTransform("arm.X_WB")};
+  }
+  if (const YAML::Node node = root["uncertainty"]) {
+    const UncertaintyFields& given = fields.uncertainty;
+    description.uncertainty =
+        RigUncertainty{given.right.sigma, given.left.sigma, given.X_CL.sigma, {}};
+    if (node["X_HC"]) description.uncertainty->X_HC = given.X_HC.sigma;
   }
   const auto check = [](const char* key, const auto& validate) {
     try {
@@ -166,6 +220,15 @@ void SaveRigFile(const RigDescription& description, const std::string& filename)
   fields.has_hand_eye = description.X_HC.has_value();
   fields.has_arm = description.arm.has_value();
   if (description.X_HC) fields.X_HC = TransformFields::Of(*description.X_HC);
+  fields.has_uncertainty = description.uncertainty.has_value();
+  if (description.uncertainty) {
+    const RigUncertainty& sigma = *description.uncertainty;
+    fields.uncertainty.right.sigma = sigma.right;
+    fields.uncertainty.left.sigma = sigma.left;
+    fields.uncertainty.X_CL.sigma = sigma.X_CL;
+    fields.uncertainty.has_hand_eye = sigma.X_HC.has_value();
+    fields.uncertainty.X_HC.sigma = sigma.X_HC.value_or(PoseUncertainty{});
+  }
   const auto write = [](const std::filesystem::path& path, const std::string& text) {
     std::ofstream file(path, std::ios::binary);
     file << text;

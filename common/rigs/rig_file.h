@@ -14,6 +14,8 @@ namespace visavis {
 ///     X_CL: {p_m: [x, y, z], q_wxyz: [w, x, y, z]}
 ///     X_HC: {...}                                            optional
 ///     arm: {urdf: FILE, base: LINK, tip: LINK, X_WB: {...}}  optional; FILE beside the rig.yaml
+///     uncertainty: {right: {fx, fy, cx, cy, distortion: [...]}, left: {...},   optional: standard
+///                   X_CL: {p_m: [x, y, z], r_rad: [x, y, z]}, X_HC: {...}}     deviations
 ///
 /// @throws ConfigError: one line with file, line, key, value and rule.
 RigDescription LoadRigFile(const std::string& filename);

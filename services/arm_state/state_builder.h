@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "common/kinematics/arm.h"
-#include "services/arm_state/clock_map.h"
 #include "services/arm_state/joint_reading.h"
 #include "services/arm_state/jump_check.h"
+#include "services/arm_state/stamp_map.h"
 #include "services/arm_state/velocity_estimator.h"
 
 namespace visavis {
@@ -67,7 +67,7 @@ class StateBuilder {
   const StateOptions options_;
   JumpCheck jump_;
   VelocityEstimator velocity_;
-  ClockMap clock_;
+  StampMap clock_;
   std::vector<int> columns_;  ///< of each joint in the reading
   std::int64_t last_us_{-1};  ///< of the last good reading, by the source's clock
   ArmSample sample_;

@@ -100,6 +100,30 @@ TEST_F(RigFileTest, CamerasAloneAreSavedWithoutTheRest) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "arm.urdf"));
 }
 
+TEST_F(RigFileTest, UncertaintiesAreKeptWithAndWithoutHandEyes) {
+  const std::string text =
+      kCameras +
+      "uncertainty: {right: {fx: 0.5, distortion: [1, 2, 3, 4, 5]}, left: {cy: 0.25}, "
+      "X_CL: {p_m: [1e-4, 2e-4, 3e-4], r_rad: [0.001, 0, 0.002]}}\n";
+  RigDescription d = Load(text);
+  ASSERT_TRUE(d.uncertainty.has_value());
+  EXPECT_EQ(d.uncertainty->right.fx, 0.5);
+  EXPECT_EQ(d.uncertainty->right.distortion[4], 5);
+  EXPECT_EQ(d.uncertainty->left.cy, 0.25);
+  EXPECT_EQ(d.uncertainty->X_CL.p_m[2], 3e-4);
+  EXPECT_FALSE(d.uncertainty->X_HC.has_value());
+  d.uncertainty->X_HC = PoseUncertainty{{1, 2, 3}, {4, 5, 6}};
+  SaveRigFile(d, folder_ / "copy.yaml");
+  const RigDescription e = LoadRigFile(folder_ / "copy.yaml");
+  ASSERT_TRUE(e.uncertainty && e.uncertainty->X_HC);
+  EXPECT_EQ(e.uncertainty->X_CL.r_rad, d.uncertainty->X_CL.r_rad);
+  EXPECT_EQ(e.uncertainty->left.cy, 0.25);
+  EXPECT_EQ(e.uncertainty->X_HC->r_rad[1], 5);
+  EXPECT_FALSE(Load(kCameras).uncertainty.has_value());
+  EXPECT_EQ(Refusal(kCameras + "uncertainty: {X_CL: {p_m: [0, -1, 0]}}\n"),
+            "rig.yaml:4: uncertainty.X_CL.p_m: [0, -1, 0]: must be 3 numbers >= 0");
+}
+
 TEST_F(RigFileTest, ASavingThatFailsNamesTheFile) {
   EXPECT_THAT([&] { SaveRigFile(Load(kCameras), "/nonexistent/rig.yaml"); },
               ThrowsMessage<std::runtime_error>("/nonexistent/rig.yaml: cannot be written"));
@@ -136,7 +160,8 @@ TEST_F(RigFileTest, AValueThatBreaksItsRuleIsNamedWithItsLine) {
       Refusal(std::string(kRight) + kLeft + "X_CL: {p_m: [.inf, 0, 0], q_wxyz: [1, 0, 0, 0]}\n"),
       "rig.yaml:3: X_CL.p_m: not finite: must be three numbers in m");
   EXPECT_THAT(Refusal(kCameras + "colour: red\n"),
-              HasSubstr("rig.yaml:4: colour: red: unknown key, must be one of X_CL X_HC arm left"));
+              HasSubstr("rig.yaml:4: colour: red: unknown key, must be one of X_CL X_HC arm left "
+                        "right uncertainty"));
 }
 
 TEST_F(RigFileTest, WhatContradictsItselfIsNamedWithItsLine) {

@@ -1,4 +1,4 @@
-#include "services/arm_state/clock_map.h"
+#include "services/arm_state/stamp_map.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 /// A sender's clock that is @p offset_us behind ours and @p drift_ppm fast, 200 stamps a second
 /// that take 0.2 ms and mostly more: the largest error of the mapped times after the first second.
 double WorstErrorMs(double offset_us, double drift_ppm) {
-  ClockMap map;
+  StampMap map;
   Random random(1);
   double worst_us = 0, arrival_us = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -30,40 +30,40 @@ double WorstErrorMs(double offset_us, double drift_ppm) {
 
 // The shortest of 400 exponential delays of mean 2 ms is within 0.1 ms of the least, but for one
 // chance in e^20; drift adds 2 s times its rate.
-TEST(ClockMapTest, AnOffsetIsMappedToWithinTheShortestWay) {
+TEST(StampMapTest, AnOffsetIsMappedToWithinTheShortestWay) {
   EXPECT_LT(WorstErrorMs(0, 0), 0.3);
   EXPECT_LT(WorstErrorMs(10'000, 0), 0.3);
   EXPECT_LT(WorstErrorMs(-3.6e9, 0), 0.3);
 }
 
-TEST(ClockMapTest, ADriftIsFollowed) {
+TEST(StampMapTest, ADriftIsFollowed) {
   EXPECT_LT(WorstErrorMs(10'000, 50), 0.4);
   EXPECT_LT(WorstErrorMs(10'000, -50), 0.4);
 }
 
-TEST(ClockMapTest, TimesComeInOrderWhenAShorterWayIsFound) {
-  ClockMap map;
+TEST(StampMapTest, TimesComeInOrderWhenAShorterWayIsFound) {
+  StampMap map;
   const std::int64_t first = map.Map(1000, 50'000), second = map.Map(2000, 10'000);
   EXPECT_EQ(first, 50'000);
   EXPECT_EQ(second, 50'001);
   EXPECT_EQ(map.Map(60'000, 70'000), 68'000);
 }
 
-TEST(ClockMapTest, ALongWayAloneMovesNothing) {
-  ClockMap map;
+TEST(StampMapTest, ALongWayAloneMovesNothing) {
+  StampMap map;
   for (int i = 0; i < 100; ++i) map.Map(10'000 * i, 5'000'000 + 10'000 * i);
   EXPECT_EQ(map.Map(1'000'000, 6'400'000), 6'000'000);
 }
 
-TEST(ClockMapTest, WhatIsOlderThanTwoSecondsIsForgotten) {
-  ClockMap map;
+TEST(StampMapTest, WhatIsOlderThanTwoSecondsIsForgotten) {
+  StampMap map;
   map.Map(0, 1'000'000);
   EXPECT_EQ(map.Map(1'500'000, 2'600'000), 2'500'000);
   EXPECT_EQ(map.Map(4'000'000, 5'100'000), 5'100'000);
 }
 
-TEST(ClockMapTest, AHostsClockThatWasSetBackStartsItAnew) {
-  ClockMap map;
+TEST(StampMapTest, AHostsClockThatWasSetBackStartsItAnew) {
+  StampMap map;
   map.Map(0, 100'000'000);
   EXPECT_EQ(map.Map(10'000, 50'000'000), 50'000'000);
 }

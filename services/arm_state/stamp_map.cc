@@ -1,16 +1,16 @@
-#include "services/arm_state/clock_map.h"
+#include "services/arm_state/stamp_map.h"
 
 #include <algorithm>
 
 namespace visavis {
 
-void ClockMap::Reset() {
+void StampMap::Reset() {
   least_us_.fill(kNone);
   bucket_ = kNone;
   last_us_ = -1;
 }
 
-std::int64_t ClockMap::Map(std::int64_t stamp_us, std::int64_t arrival_us) {
+std::int64_t StampMap::Map(std::int64_t stamp_us, std::int64_t arrival_us) {
   std::int64_t bucket = arrival_us / kBucketUs;
   const auto size = static_cast<std::int64_t>(least_us_.size());
   // Where the host's own clock was set back, or nothing came for long, all is old.

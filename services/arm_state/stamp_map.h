@@ -8,9 +8,9 @@ namespace visavis {
 /// Maps the times of a clock of unknown origin to host time: plus the least difference of arrival
 /// and stamp of the last two seconds, which is the clocks' offset and the shortest way. A drift of
 /// 50 ppm thus costs 0.1 ms at most. Allocates nothing.
-class ClockMap {
+class StampMap {
  public:
-  ClockMap() { Reset(); }
+  StampMap() { Reset(); }
 
   /// Host time [us] of @p stamp_us, which arrived at @p arrival_us. Later than the last one, unless
   /// the host's clock was set back by more than 1 s.
