@@ -132,6 +132,7 @@ void RunHandEye(const Arguments& arguments, const std::function<bool()>& stopped
   HandEyeSettings settings;
   settings.arm_sigma_m = 1e-3 * arguments.arm_mm;
   settings.arm_sigma_rad = arguments.arm_deg * kDegree;
+  settings.rig_uncertainty = rig.uncertainty;
   const HandEyeCalibration calibration = CalibrateHandEye(board, rig.rig, matched.views, settings);
   out << HandEyeText(matched.views, calibration);
   rig.X_HC = calibration.X_HC;

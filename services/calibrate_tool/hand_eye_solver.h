@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/geometry/stereo_rig.h"
+#include "common/rigs/rig_description.h"
 #include "services/calibrate_tool/board.h"
 
 namespace visavis {
@@ -19,6 +21,9 @@ struct HandEyeSettings {
   double arm_sigma_m{2e-4};    ///< how exactly the arm knows its hand's place, > 0
   double arm_sigma_rad{3e-4};  ///< and its direction, > 0
   double outlier_px{1.0};      ///< as in StereoSettings
+  /// How exactly the rig is known: goes into the standard deviations. As if its numbers did not
+  /// depend on each other, though they do, so that these are rather too large.
+  std::optional<RigUncertainty> rig_uncertainty;
 };
 
 struct HandEyeCalibration {

@@ -18,4 +18,10 @@ void SolveOrThrow(const std::string& what, ceres::Problem* problem);
 Eigen::MatrixXd CovarianceOf(const std::string& what, const std::vector<const double*>& blocks,
                              ceres::Problem* problem);
 
+/// How the solution's @p blocks follow where @p inputs, constant blocks of the problem, change: one
+/// row a number of the blocks, one column a number of the inputs.
+/// @throws as CovarianceOf().
+Eigen::MatrixXd SensitivityOf(const std::string& what, const std::vector<const double*>& blocks,
+                              const std::vector<double*>& inputs, ceres::Problem* problem);
+
 }  // namespace visavis

@@ -134,7 +134,7 @@ void DrawHandEyeReport(const std::string& file, const std::vector<ArmView>& view
       60, 732,
       Format("     +- %.3f %.3f %.3f deg", calibration.r_HC_sigma_rad[0] / kDegree,
              calibration.r_HC_sigma_rad[1] / kDegree, calibration.r_HC_sigma_rad[2] / kDegree));
-  canvas.Text(60, 764, "(one standard deviation, the cameras' own left aside)", 0.9);
+  canvas.Text(60, 764, "(one standard deviation; the cameras' own included where known)", 0.9);
   canvas.Text(60, 810,
               Format("board's pose by both eyes: %.3f px; start: %s", calibration.rms_px,
                      calibration.start.c_str()));

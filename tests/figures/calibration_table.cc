@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 
+#include "services/calibrate_tool/calibration_text.h"
 #include "services/calibrate_tool/hand_eye_solver.h"
 #include "services/calibrate_tool/stereo_solver.h"
 #include "tests/support/board_scene.h"
@@ -76,7 +77,9 @@ void Run(const Case& c, int num_trials) {
     X_CL.Add(scene.rig.X_CL, stereo.rig.X_CL, stereo.p_CL_sigma_m.norm(),
              stereo.r_CL_sigma_rad.norm());
     rms_px += stereo.rms_px / num_trials;
-    const HandEyeCalibration hand = CalibrateHandEye(scene.board, stereo.rig, views, {});
+    HandEyeSettings hand_settings;
+    hand_settings.rig_uncertainty = UncertaintyOf(stereo);
+    const HandEyeCalibration hand = CalibrateHandEye(scene.board, stereo.rig, views, hand_settings);
     X_HC.Add(scene.X_HC, hand.X_HC, hand.p_HC_sigma_m.norm(), hand.r_HC_sigma_rad.norm());
   }
   std::printf("| %s | %d | %.1f | %.2f | %s | %s |\n", c.name, c.num_views, c.noise_px, rms_px,

@@ -71,6 +71,28 @@ TEST(HandEyeSolverTest, ItsStandardDeviationsAreThoseOfItsErrors) {
   }
 }
 
+// One number of the rig is off by its standard deviation; the answer is off by what is told.
+TEST(HandEyeSolverTest, TheRigsOwnUncertaintyIsInItsStandardDeviations) {
+  const BoardScene scene = MakeBoardScene(Spec(), 10, 5);
+  const auto views = SeeAll(scene, 0, 5);
+  StereoRig off = scene.rig;
+  off.right.cx += 0.5;
+  HandEyeSettings settings;
+  const auto without = CalibrateHandEye(scene.board, off, views, settings);
+  settings.rig_uncertainty.emplace();
+  settings.rig_uncertainty->right.cx = 0.5;
+  const auto with = CalibrateHandEye(scene.board, off, views, settings);
+  const Eigen::Vector3d p = with.X_HC.translation() - scene.X_HC.translation();
+  const Eigen::Vector3d r = LogRotation(scene.X_HC.linear().transpose() * with.X_HC.linear());
+  EXPECT_EQ(with.X_HC.matrix(), without.X_HC.matrix());
+  const auto added = [](const Eigen::Vector3d& larger, const Eigen::Vector3d& smaller) {
+    return std::sqrt(larger.squaredNorm() - smaller.squaredNorm());
+  };
+  EXPECT_NEAR(added(with.p_HC_sigma_m, without.p_HC_sigma_m), p.norm(), 0.2 * p.norm());
+  EXPECT_NEAR(added(with.r_HC_sigma_rad, without.r_HC_sigma_rad), r.norm(), 0.2 * r.norm());
+  EXPECT_GT(p.norm(), 1e-5);
+}
+
 TEST(HandEyeSolverTest, AViewWhoseArmWasWrongStandsOut) {
   const BoardScene scene = MakeBoardScene(Spec(), 12, 2);
   auto views = SeeAll(scene, 0.1, 2);

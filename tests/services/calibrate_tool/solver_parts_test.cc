@@ -91,6 +91,22 @@ TEST(LeastSquaresTest, CovarianceIsThatOfAStraightLine) {
   EXPECT_NEAR(covariance(0, 1), -3.5 * var_b, 1e-12);
 }
 
+// a = mean(y) - b mean(x), where b is given.
+TEST(LeastSquaresTest, SensitivityIsThatOfAStraightLineOfGivenSlope) {
+  double a = 0, b = 0.5;
+  ceres::Problem problem;
+  for (const double x : {1.0, 2.0, 4.0, 7.0}) {
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<LineError, 1, 1, 1>(new LineError{x, std::sin(x)}), nullptr,
+        &a, &b);
+  }
+  problem.SetParameterBlockConstant(&b);
+  SolveOrThrow("line", &problem);
+  const Eigen::MatrixXd sensitivity = SensitivityOf("line", {&a}, {&b}, &problem);
+  EXPECT_NEAR(sensitivity(0, 0), -3.5, 1e-12);
+  EXPECT_TRUE(problem.IsParameterBlockConstant(&b));
+}
+
 TEST(LeastSquaresTest, WhatTheDataDoesNotDetermineIsRefused) {
   double a = 0, b = 0;
   ceres::Problem problem;
