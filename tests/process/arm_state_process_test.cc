@@ -83,9 +83,11 @@ class ArmStateProcessTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
+    // JPEG: small enough for any socket's buffer.
     RunWell({Program("simulator"), "--fast", "--record", *folder_ / "simulated.lcm", "--scenario",
              "shuttle_x", "--period", "3", "--seconds", "2", "--set", "scene.texture_size=512",
-             "--set", "scene.edge_samples=1"});
+             "--set", "scene.edge_samples=1", "--set", "image_format=jpeg", "--set",
+             "jpeg_quality=60"});
     EventLogWriter writer(*folder_ / "iiwa.lcm", EventLogWriter::Mode::kReplace);
     for (LogEvent event : ReadLog(*folder_ / "simulated.lcm")) {
       if (event.channel == kArmStateChannel)
@@ -180,7 +182,7 @@ TEST_F(ArmStateProcessTest, VelocitiesFromPositionsAndMappedTimesServeAsWell) {
 // Live: arm states and recogniser as processes, the test as the cameras and Drake's driver.
 TEST_F(ArmStateProcessTest, LiveItFeedsARunningRecogniser) {
   if (!HasMulticastRoute()) GTEST_SKIP() << kNoMulticastRoute;
-  const std::string url = TestLcmUrl(0, "&recv_buf_size=4194304");
+  const std::string url = TestLcmUrl();
   LcmBus bus(url, "");
   std::vector<head_pose_t> poses;
   service_status_t status{};

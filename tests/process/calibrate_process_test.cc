@@ -8,6 +8,8 @@
 
 #include "common/bus/channels.h"
 #include "common/bus/lcm_bus.h"
+#include "common/convert/image_message.h"
+#include "common/image/image_decoder.h"
 #include "common/rigs/rig_file.h"
 #include "tests/support/board_pictures.h"
 #include "tests/support/child_process.h"
@@ -35,12 +37,17 @@ TEST(CalibrateProcessTest, LiveItGuidesAndCalibratesWhatThereIsWhenStopped) {
   const PairRenderer renderer(scene);
   Random random(1);
   std::vector<images_t> pairs;
+  JpegEncoder jpeg;  // small enough for any socket's buffer
   for (std::size_t i = 0; i < scene.X_CT.size(); ++i) {
     pairs.push_back(
         renderer.Render(scene.X_CT[i], 1'000'000 * static_cast<std::int64_t>(i + 1), &random));
+    for (image_t& image : pairs.back().images) {
+      const image_t raw = image;
+      SetImage(jpeg.Encode(FromMessage(raw), 75), raw.utime, &image);
+    }
   }
 
-  const std::string url = TestLcmUrl(0, "&recv_buf_size=4194304");
+  const std::string url = TestLcmUrl();
   LcmBus bus(url, "");
   ChildProcess calibrate({Environment("VISAVIS_BIN_DIR") + "/visavis-calibrate", "stereo", "--live",
                           "--lcm-url", url, "--board", folder / "board.yaml", "-o",
