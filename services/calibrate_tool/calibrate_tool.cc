@@ -1,7 +1,7 @@
 #include "services/calibrate_tool/calibrate_tool.h"
 
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <ostream>
 #include <stdexcept>
@@ -49,7 +49,10 @@ Board LoadBoard(const Arguments& arguments) {
 ViewSource SourceOf(const Arguments& arguments) {
   if (arguments.live == !arguments.source.log.empty())
     throw std::invalid_argument("LOG or --live: one of the two must be given");
-  return arguments.source;
+  ViewSource source = arguments.source;
+  const char* from_environment = std::getenv("LCM_DEFAULT_URL");
+  if (source.lcm_url.empty()) source.lcm_url = from_environment ? from_environment : kDefaultLcmUrl;
+  return source;
 }
 
 /// Refuses at once what could not be written at the end.
@@ -193,9 +196,8 @@ void AddViewOptions(CLI::App* c, Arguments* a) {
   c->add_option("--min-change-px", collector.min_change_px, "from any view kept")
       ->check(CLI::Range(0.0, 10000.0))
       ->capture_default_str();
-  c->add_option("--lcm-url", a->source.lcm_url, "live: LCM network")
-      ->default_val(kDefaultLcmUrl)
-      ->envname("LCM_DEFAULT_URL");
+  c->add_option("--lcm-url", a->source.lcm_url,
+                std::string("live: LCM network [LCM_DEFAULT_URL, then ") + kDefaultLcmUrl + "]");
   c->add_option("--prefix", a->source.prefix, "goes before every channel, e.g. ROBOT1_");
 }
 
