@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <set>
 #include <system_error>
 
@@ -85,8 +86,22 @@ std::string TextAt(const std::uint8_t* answer, std::size_t offset, std::size_t s
   return {begin, strnlen(begin, size)};
 }
 
-/// The camera that sent this packet, if it is a whole answer.
-void Read(const Socket& from, std::vector<GvcpDevice>* devices) {
+/// Where the camera says that it is; the answer to a broadcast may come from another address of its
+/// host. Nothing for one that calls another host's loopback its own.
+std::optional<in_addr> AddressOf(const std::uint8_t* answer, in_addr sender,
+                                 const std::set<std::uint32_t>& own) {
+  in_addr address{};
+  std::memcpy(&address, answer + 0x24, sizeof address);
+  if (address.s_addr == 0) return sender;
+  const bool is_loopback = (ntohl(address.s_addr) >> 24) == 127;
+  if (is_loopback && address.s_addr != sender.s_addr && own.count(sender.s_addr) == 0)
+    return std::nullopt;
+  return address;
+}
+
+/// Takes the answers that wait; what is no whole answer is left out.
+void Read(const Socket& from, const std::set<std::uint32_t>& own,
+          std::vector<GvcpDevice>* devices) {
   std::array<std::uint8_t, 1024> packet;
   sockaddr_in sender{};
   socklen_t size = sizeof sender;
@@ -99,8 +114,10 @@ void Read(const Socket& from, std::vector<GvcpDevice>* devices) {
     if (((packet[2] << 8) | packet[3]) != kDiscoveryAnswer || packet[0] != 0) continue;
     const std::uint8_t* answer = packet.data() + kHeaderSize;
     // Registers 0 to 0xf8 of every GigE Vision camera.
+    const auto address = AddressOf(answer, sender.sin_addr, own);
+    if (!address) continue;
     GvcpDevice device{TextAt(answer, 0x48, 32), TextAt(answer, 0x68, 32), TextAt(answer, 0xd8, 16),
-                      TextAt(answer, 0xe8, 16), ToText(sender.sin_addr),  RouteTo(sender.sin_addr)};
+                      TextAt(answer, 0xe8, 16), ToText(*address),         RouteTo(*address)};
     const bool known = std::any_of(devices->begin(), devices->end(), [&](const GvcpDevice& d) {
       return d.address == device.address;
     });
@@ -118,6 +135,7 @@ bool IsCalled(const GvcpDevice& device, const std::string& name) {
 
 std::vector<GvcpDevice> DiscoverGvcp(int wait_ms, const std::vector<std::string>& addresses) {
   std::vector<std::unique_ptr<Socket>> sockets;
+  std::set<std::uint32_t> own_addresses;
   std::set<std::uint32_t> single;  // asked one by one, through whichever interface
   for (const std::string& text : addresses) {
     in_addr address{};
@@ -130,6 +148,7 @@ std::vector<GvcpDevice> DiscoverGvcp(int wait_ms, const std::vector<std::string>
   for (const ifaddrs* i = interfaces; i; i = i->ifa_next) {
     if (!i->ifa_addr || i->ifa_addr->sa_family != AF_INET || !(i->ifa_flags & IFF_UP)) continue;
     const auto own = reinterpret_cast<const sockaddr_in*>(i->ifa_addr)->sin_addr.s_addr;
+    own_addresses.insert(own);
     single.insert(own);  // a camera made by a program on this host
     if (!(i->ifa_flags & IFF_BROADCAST)) continue;
     auto socket = Open(own);
@@ -153,7 +172,7 @@ std::vector<GvcpDevice> DiscoverGvcp(int wait_ms, const std::vector<std::string>
         end - std::chrono::steady_clock::now());
     if (left.count() <= 0) return devices;
     if (poll(fds.data(), fds.size(), static_cast<int>(left.count())) <= 0) continue;
-    for (const auto& socket : sockets) Read(*socket, &devices);
+    for (const auto& socket : sockets) Read(*socket, own_addresses, &devices);
   }
 }
 
