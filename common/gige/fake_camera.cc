@@ -86,6 +86,7 @@ class FakeCamera::Impl {
     mute_ = false;
     SetFrozen(false);
     camera_.reset(arv_gv_fake_camera_new(address.c_str(), options_.serial.c_str()));
+    fake_ = arv_gv_fake_camera_get_fake_camera(camera_.get());
     Write(ARV_FAKE_CAMERA_REGISTER_WIDTH, static_cast<std::uint32_t>(options_.width));
     Write(ARV_FAKE_CAMERA_REGISTER_HEIGHT, static_cast<std::uint32_t>(options_.height));
     Write(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, ToAravis(options_.format));
@@ -108,7 +109,7 @@ class FakeCamera::Impl {
     changed_.notify_all();
   }
 
-  ArvFakeCamera* fake() const { return arv_gv_fake_camera_get_fake_camera(camera_.get()); }
+  ArvFakeCamera* fake() const { return fake_; }
   void Write(std::uint32_t address, std::uint32_t value) {
     arv_fake_camera_write_register(fake(), address, value);
   }
@@ -116,6 +117,7 @@ class FakeCamera::Impl {
   Options options_;
   const FillFrame fill_;
   ObjectPtr<ArvGvFakeCamera> camera_;
+  ArvFakeCamera* fake_{nullptr};  // its inside, which its thread may use until it has ended
   std::atomic<bool> mute_{false};
   std::atomic<int> to_drop_{0};
   std::atomic<std::int64_t> clock_step_us_{0};
@@ -135,8 +137,12 @@ class FakeCamera::Impl {
     std::size_t size = 0;
     auto* pixels =
         static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, &size)));
+    guint32 period_us = 0;
+    arv_fake_camera_read_register(fake(), ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
+                                  &period_us);
     const FakeFrame frame{number_++,
                           SystemClock().NowUs(),
+                          period_us,
                           static_cast<double>(exposure_us),
                           static_cast<double>(gain),
                           FromAravis(format).value_or(PixelFormat::kGray),

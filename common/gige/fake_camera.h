@@ -14,6 +14,7 @@ namespace visavis {
 struct FakeFrame {
   std::uint64_t number;      ///< counts the exposures since power-on, lost ones too
   std::int64_t utime_us;     ///< host time of now
+  std::int64_t period_us;    ///< as the client set it: exposures are at its multiples
   double exposure_us, gain;  ///< as the client set them
   PixelFormat format;        ///< as the client set it; kGray, kRgb or a Bayer pattern
   int width, height;         ///< [px] as the client set them

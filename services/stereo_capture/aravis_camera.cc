@@ -237,7 +237,7 @@ bool AravisCamera::Take(const std::shared_ptr<ArvBuffer>& buffer, const CameraFo
   }
   if (!wrong.empty()) return false;
   frame.side = side_;
-  frame.memory = buffer;
+  frame.pixels = AravisConnection::Pixels(buffer);
   frame.session = session_;
   frame.id = arv_buffer_get_frame_id(buffer.get());
   frame.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer.get()));

@@ -7,7 +7,8 @@
 namespace visavis {
 namespace {
 
-// Aravis keeps tables for the process that two cameras must not fill at once: it reads garbage then.
+// Aravis keeps tables for the process that two cameras must not fill at once: it reads garbage
+// then.
 std::mutex& AravisTables() {
   static std::mutex mutex;
   return mutex;
@@ -104,8 +105,14 @@ void AravisConnection::Start(const CameraConfig& config, std::size_t payload_byt
     if (!config.packet_resend)
       g_object_set(stream_.get(), "packet-resend", ARV_GV_STREAM_PACKET_RESEND_NEVER, nullptr);
   }
-  for (int i = 0; i < config.num_buffers; ++i)
-    arv_stream_push_buffer(stream_.get(), arv_buffer_new(payload_bytes, nullptr));
+  for (int i = 0; i < config.num_buffers; ++i) {
+    auto pixels = std::make_unique<std::vector<std::uint8_t>>(payload_bytes);
+    void* data = pixels->data();
+    arv_stream_push_buffer(stream_.get(),
+                           arv_buffer_new_full(payload_bytes, data, pixels.release(), [](void* p) {
+                             delete static_cast<std::vector<std::uint8_t>*>(p);
+                           }));
+  }
   return_->stream = stream_.get();
   arv_camera_start_acquisition(camera_.get(), error.out());
   ThrowOnError(error, "start of acquisition");
@@ -122,6 +129,12 @@ std::shared_ptr<ArvBuffer> AravisConnection::Pop(std::uint64_t timeout_us) {
               g_object_unref(b);
             }
           }};
+}
+
+std::shared_ptr<std::vector<std::uint8_t>> AravisConnection::Pixels(
+    const std::shared_ptr<ArvBuffer>& buffer) {
+  const void* pixels = arv_buffer_get_user_data(buffer.get());
+  return {buffer, static_cast<std::vector<std::uint8_t>*>(const_cast<void*>(pixels))};
 }
 
 std::int64_t AravisConnection::Count(const char* name) const {

@@ -49,6 +49,9 @@ class AravisConnection {
   /// The next buffer, whatever its status; nullptr after @p timeout_us. It goes back to the stream,
   /// or is freed if that is gone, when the last copy of the pointer goes.
   std::shared_ptr<ArvBuffer> Pop(std::uint64_t timeout_us);
+  /// The memory of a buffer that came from Pop(), which lives as long as the buffer.
+  static std::shared_ptr<std::vector<std::uint8_t>> Pixels(
+      const std::shared_ptr<ArvBuffer>& buffer);
   /// Count of the stream's, e.g. n_missing_packets.
   std::int64_t Count(const char* name) const;
 

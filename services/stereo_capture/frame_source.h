@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/image/image.h"
 #include "services/stereo_capture/stereo_pairer.h"
@@ -13,8 +14,10 @@ namespace visavis {
 /// One good frame as a camera gave it.
 struct CapturedFrame {
   Side side{Side::kRight};
-  ImageView image;                     ///< valid while @p memory lives
-  std::shared_ptr<const void> memory;  ///< gives the pixels back to the camera when it goes
+  ImageView image;  ///< into @p pixels
+  /// The picture's memory, which goes back to the camera when the last copy of the pointer does. It
+  /// may be swapped out while it is published, and must be back by then.
+  std::shared_ptr<std::vector<std::uint8_t>> pixels;
   std::int64_t session{0};    ///< another number: the camera was away, its clock and ids begin anew
   std::uint64_t id{0};        ///< the camera's number of the frame, see FrameIds
   std::int64_t device_ns{0};  ///< the camera's own time stamp, of any epoch

@@ -8,6 +8,7 @@ namespace visavis {
 
 const images_t& ImagesMessage::Pair(const StampedFrame& left, const StampedFrame& right,
                                     std::int64_t seq) {
+  GiveBack();
   pair_.utime = right.utime_us;
   pair_.n_images = 2;
   pair_.image_types = {images_t::LEFT, images_t::RIGHT};
@@ -19,6 +20,7 @@ const images_t& ImagesMessage::Pair(const StampedFrame& left, const StampedFrame
 }
 
 const images_t& ImagesMessage::Single(const StampedFrame& frame, std::int64_t seq) {
+  GiveBack();
   const bool is_left = frame.frame.side == Side::kLeft;
   single_.utime = frame.utime_us;
   single_.n_images = 1;
@@ -26,6 +28,11 @@ const images_t& ImagesMessage::Single(const StampedFrame& frame, std::int64_t se
   single_.images.resize(1);
   Fill(frame, seq, std::nullopt, &single_.images[0]);
   return single_;
+}
+
+void ImagesMessage::GiveBack() {
+  for (const Loan& loan : loans_) loan.image->data.swap(*loan.pixels);
+  loans_.clear();
 }
 
 void ImagesMessage::Fill(const StampedFrame& frame, std::int64_t seq,

@@ -131,6 +131,7 @@ void StereoCaptureService::Take(CapturedFrame frame) {
 
 void StereoCaptureService::Publish(const images_t& images) {
   context_.bus->Publish(kStereoImagesChannel, images);
+  message_.GiveBack();
   context_.status->Processed(1e-3 * static_cast<double>(context_.clock->NowUs() - images.utime));
 }
 
