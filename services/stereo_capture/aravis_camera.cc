@@ -18,6 +18,7 @@ constexpr double kRefusedS = 1;       // until a camera that refused is asked ag
 constexpr double kExposurePollS = 1;  // where the camera chooses its exposure itself
 constexpr std::size_t kMaxTeardowns = 4;
 constexpr std::uint64_t kPopUs = 20'000;
+constexpr std::int64_t kMaxStale = 3;  // more in succession: the camera's clock was set back
 
 std::string StatusText(ArvBufferStatus status) {
   switch (status) {
@@ -76,7 +77,7 @@ void AravisCamera::Run() {
     }
     Wait(wait_s);
   }
-  teardowns_.clear();  // waits for them
+  teardowns_.clear();  // waits for them: 5 s for a camera that is gone
 }
 
 double AravisCamera::RunOnce() {
@@ -131,11 +132,15 @@ bool AravisCamera::TakeControl(AravisConnection* connection, const std::string& 
 
 void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
   ++session_;
+  newest_ns_ = num_stale_ = num_wrong_sizes_ = 0;
   bool first = true, streaming = false;
   double last_s = MonotonicSeconds(), last_poll_s = last_s;
   const bool polls = config_.exposure == "auto" || config_.gain == "auto";
   const std::int64_t missing_before = Report().missing_packets;
   const std::int64_t resent_before = Report().resent_packets;
+  // A camera that is gone is not told to stop, since each word to it takes seconds; one that is not
+  // stops when we leave.
+  connection->set_farewell(false);
   while (!stop_) {
     const auto buffer = connection->Pop(Trigger(*connection));
     const double now_s = MonotonicSeconds();
@@ -143,7 +148,7 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
       last_s = now_s;
       // The first frame's arrival says little of the link, and is often late.
       if (std::exchange(first, false)) continue;
-      const bool good = Take(buffer, format);
+      const bool good = Take(*connection, buffer, format);
       const std::lock_guard<std::mutex> lock(mutex_);
       report_.missing_packets = missing_before + connection->Count("n_missing_packets");
       report_.resent_packets = resent_before + connection->Count("n_resent_packets");
@@ -155,7 +160,7 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
     }
     if (connection->control_lost()) {
       Fail(State::kOpening, "the camera does not answer any more");
-      return connection->GiveUp();
+      return;
     }
     const double patience_s = first ? kFirstFrameS + 2 * config_.period_s() : config_.stall_s();
     if (now_s - last_s > patience_s) {
@@ -174,6 +179,7 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
       ReadExposure(connection->camera(), &format.exposure_us, &format.gain_db);
     }
   }
+  connection->set_farewell(MonotonicSeconds() - last_s < 2 * config_.period_s());
 }
 
 bool AravisCamera::WaitsForTrigger(const AravisConnection& connection) {
@@ -201,31 +207,38 @@ std::uint64_t AravisCamera::Trigger(const AravisConnection& connection) {
   return static_cast<std::uint64_t>(std::clamp<std::int64_t>(wait_us, 0, kPopUs));
 }
 
-bool AravisCamera::Take(const std::shared_ptr<ArvBuffer>& buffer, const CameraFormat& format) {
-  const auto status = arv_buffer_get_status(buffer.get());
-  std::string wrong;
-  CapturedFrame frame;
-  if (status != ARV_BUFFER_STATUS_SUCCESS) {
-    wrong = StatusText(status);
-  } else if (arv_buffer_get_payload_type(buffer.get()) != ARV_BUFFER_PAYLOAD_TYPE_IMAGE) {
-    wrong = "frame that is no image";
-  } else {
-    frame.image.data =
-        static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer.get(), &frame.image.size));
-    frame.image.width = arv_buffer_get_image_width(buffer.get());
-    frame.image.height = arv_buffer_get_image_height(buffer.get());
-    frame.image.format = format.format;
-    frame.image.stride = format.width * BytesPerPixel(format.format);
-    const auto needed = static_cast<std::size_t>(frame.image.stride) * format.height;
-    if (frame.image.width != format.width || frame.image.height != format.height ||
-        arv_buffer_get_image_pixel_format(buffer.get()) != format.code) {
-      wrong = "frame of " + std::to_string(frame.image.width) + "x" +
-              std::to_string(frame.image.height) + ", not as agreed";
-    } else if (frame.image.size < needed) {
-      wrong = "frame of " + std::to_string(frame.image.size) + " bytes where " +
-              std::to_string(needed) + " were agreed";
-    }
+// A frame is one that Aravis holds for whole, of the size that was agreed, and newer than the last:
+// from nonsense on the line Aravis makes whole frames of a buffer's earlier content.
+std::string AravisCamera::Fault(const AravisConnection& connection, ArvBuffer* buffer,
+                                const CameraFormat& format) {
+  const auto status = arv_buffer_get_status(buffer);
+  if (status != ARV_BUFFER_STATUS_SUCCESS) return StatusText(status);
+  if (arv_buffer_get_payload_type(buffer) != ARV_BUFFER_PAYLOAD_TYPE_IMAGE)
+    return "frame that is no image";
+  const int width = arv_buffer_get_image_width(buffer);
+  const int height = arv_buffer_get_image_height(buffer);
+  if (width != format.width || height != format.height ||
+      arv_buffer_get_image_pixel_format(buffer) != format.code) {
+    return "frame of " + std::to_string(width) + "x" + std::to_string(height) + ", not as agreed";
   }
+  std::size_t size = 0;
+  arv_buffer_get_data(buffer, &size);
+  if (size < format.image_bytes())
+    return "frame of " + std::to_string(size) + " bytes, not as agreed";
+  const std::int64_t wrong_sizes = connection.Count("n_size_mismatch_errors");
+  if (wrong_sizes != std::exchange(num_wrong_sizes_, wrong_sizes))
+    return "frame with packets larger than agreed";
+  const auto time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
+  if (newest_ns_ > 0 && time_ns <= newest_ns_ && ++num_stale_ <= kMaxStale)
+    return "frame that is no newer than the one before";
+  newest_ns_ = time_ns;
+  num_stale_ = 0;
+  return "";
+}
+
+bool AravisCamera::Take(const AravisConnection& connection,
+                        const std::shared_ptr<ArvBuffer>& buffer, const CameraFormat& format) {
+  const std::string wrong = Fault(connection, buffer.get(), format);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (wrong.empty()) {
@@ -236,6 +249,13 @@ bool AravisCamera::Take(const std::shared_ptr<ArvBuffer>& buffer, const CameraFo
     }
   }
   if (!wrong.empty()) return false;
+  CapturedFrame frame;
+  frame.image = {static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer.get(), nullptr)),
+                 format.width,
+                 format.height,
+                 format.width * BytesPerPixel(format.format),
+                 format.image_bytes(),
+                 format.format};
   frame.side = side_;
   frame.pixels = AravisConnection::Pixels(buffer);
   frame.session = session_;
@@ -245,6 +265,11 @@ bool AravisCamera::Take(const std::shared_ptr<ArvBuffer>& buffer, const CameraFo
       static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer.get()) / 1000);
   frame.exposure_us = format.exposure_us;
   frame.gain_db = format.gain_db;
+  if (frame.device_ns == 0) {  // a camera without a clock: its frames' arrival must do
+    const double exposure_us = std::isfinite(frame.exposure_us) ? frame.exposure_us : 0;
+    frame.is_host_time = true;
+    frame.device_ns = 1000 * (frame.arrival_us - std::llround(exposure_us / 2));
+  }
   queue_.Push(std::move(frame));
   return true;
 }

@@ -40,7 +40,11 @@ class AravisCamera final : public FrameSource {
   bool TakeControl(AravisConnection* connection, const std::string& camera);
   void Stream(AravisConnection* connection, CameraFormat format);
   /// Passes one buffer on, or counts what is wrong with it. @return whether it was good.
-  bool Take(const std::shared_ptr<ArvBuffer>& buffer, const CameraFormat& format);
+  bool Take(const AravisConnection& connection, const std::shared_ptr<ArvBuffer>& buffer,
+            const CameraFormat& format);
+  /// What is wrong with a buffer; empty: nothing.
+  std::string Fault(const AravisConnection& connection, ArvBuffer* buffer,
+                    const CameraFormat& format);
   /// Whether silence is what it should be: nobody pulls the trigger, and the camera answers.
   bool WaitsForTrigger(const AravisConnection& connection);
   /// Pulls a software trigger on the ticks of the host's clock that both cameras share.
@@ -60,6 +64,9 @@ class AravisCamera final : public FrameSource {
   std::string last_address_;
   std::int64_t session_{0};
   std::int64_t next_trigger_us_{0};
+  // Of this session: the newest good frame's time, frames in succession that are not newer, packets
+  // of wrong size so far.
+  std::int64_t newest_ns_{0}, num_stale_{0}, num_wrong_sizes_{0};
   std::list<std::future<void>> teardowns_;
 
   mutable std::mutex mutex_;  // of the two below

@@ -82,7 +82,7 @@ AravisConnection::~AravisConnection() {
     return_->stream = nullptr;
   }
   g_signal_handlers_disconnect_by_data(arv_camera_get_device(camera_.get()), &control_lost_);
-  if (stream_ && !given_up_) arv_camera_stop_acquisition(camera_.get(), nullptr);
+  if (stream_ && farewell_) arv_camera_stop_acquisition(camera_.get(), nullptr);
   stream_.reset();  // before the camera
 }
 

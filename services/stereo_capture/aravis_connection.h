@@ -41,8 +41,9 @@ class AravisConnection {
   bool TakeControl();
   /// Set by Aravis once the camera has not answered for seconds.
   bool control_lost() const { return control_lost_; }
-  /// The camera will not answer any more: say no farewell.
-  void GiveUp() { given_up_ = true; }
+  /// Whether the destructor tells the camera to stop, true at first. One that is gone takes seconds
+  /// not to hear it.
+  void set_farewell(bool farewell) { farewell_ = farewell; }
 
   /// Makes the stream and starts it. @throws CameraLost.
   void Start(const CameraConfig& config, std::size_t payload_bytes);
@@ -66,7 +67,7 @@ class AravisConnection {
   ObjectPtr<ArvStream> stream_;
   std::shared_ptr<Return> return_{std::make_shared<Return>()};
   std::atomic<bool> control_lost_{false};
-  bool given_up_{false};
+  bool farewell_{true};
 };
 
 }  // namespace visavis

@@ -234,6 +234,9 @@ class Setup {
     result.code = code;
     result.payload_bytes = arv_camera_get_payload(camera_, error.out());
     ThrowOnError(error, "payload");
+    if (result.payload_bytes < result.image_bytes())
+      throw CameraLost("payload: " + std::to_string(result.payload_bytes) + " bytes: must be " +
+                       std::to_string(result.image_bytes()) + " at least");
     ReadExposure(camera_, &result.exposure_us, &result.gain_db);
     std::ostringstream text;
     text << result.width << "x" << result.height << " " << format->name;

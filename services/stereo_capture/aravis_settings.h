@@ -19,10 +19,13 @@ struct PictureSize {
 struct CameraFormat {
   int width{0}, height{0};  ///< [px]
   PixelFormat format{PixelFormat::kGray};
-  ArvPixelFormat code{0};  ///< GenICam's number of the format
-  std::size_t payload_bytes{0};
-  double exposure_us, gain_db;  ///< NaN: the camera does not tell
-  std::string text;             ///< all of it in a line, for people
+  ArvPixelFormat code{0};        ///< GenICam's number of the format
+  std::size_t payload_bytes{0};  ///< of a frame on the wire: at least the image
+  double exposure_us, gain_db;   ///< NaN: the camera does not tell
+  std::size_t image_bytes() const {
+    return static_cast<std::size_t>(width) * height * BytesPerPixel(format);
+  }
+  std::string text;  ///< all of it in a line, for people
 };
 
 /// Stops @p camera, sets what the configuration says, reads back what it made of it.

@@ -1,8 +1,10 @@
 #include "services/stereo_capture/picture_reader.h"
 
+#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <stdexcept>
+#include <vector>
 
 #include "common/csv/csv_table.h"
 
@@ -59,9 +61,17 @@ class VideoReader final : public PictureReader {
 
  private:
   static void Open(const std::string& key, const std::string& file, cv::VideoCapture* video) {
-    try {
-      if (video->open(file)) return;
-    } catch (const cv::Exception&) {  // told below
+    // OpenCV tells the terminal too, which is not for it to do.
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    const bool is_pattern = file.find('%') != std::string::npos;
+    const std::vector<int> backends = is_pattern
+                                          ? std::vector<int>{cv::CAP_IMAGES}
+                                          : std::vector<int>{cv::CAP_FFMPEG, cv::CAP_OPENCV_MJPEG};
+    for (const int backend : backends) {
+      try {
+        if (video->open(file, backend)) return;
+      } catch (const cv::Exception&) {  // told below
+      }
     }
     throw std::invalid_argument(key + ": " + file +
                                 ": must be a video, or a pattern such as left_%04d.png");

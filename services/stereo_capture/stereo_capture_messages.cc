@@ -38,9 +38,14 @@ void ImagesMessage::GiveBack() {
 void ImagesMessage::Fill(const StampedFrame& frame, std::int64_t seq,
                          std::optional<std::int64_t> skew_us, image_t* image) {
   const ImageView& view = frame.frame.image;
-  const bool compress = jpeg_quality_ && view.format != PixelFormat::kJpeg;
-  SetImage(compress ? encoder_.Encode(decoder_.Decode(view), *jpeg_quality_) : view, frame.utime_us,
-           image);
+  if (jpeg_quality_) {
+    SetImage(encoder_.Encode(decoder_.Decode(view), *jpeg_quality_), frame.utime_us, image);
+  } else if (frame.frame.pixels && frame.frame.pixels->size() == view.size) {
+    SwapImage(view, frame.utime_us, frame.frame.pixels.get(), image);
+    loans_.push_back({frame.frame.pixels, image});
+  } else {  // the camera pads its frames
+    SetImage(view, frame.utime_us, image);
+  }
   AddMetadata("seq", seq, image);
   AddMetadata("camera_us", frame.camera_us, image);
   if (std::isfinite(frame.frame.exposure_us))

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kQueueFrames = 8;
 constexpr double kStartWaitS = 1.5;  // for the cameras' first words
-constexpr double kRequireWaitS = 8;  // with start: require; a dead owner holds a camera for 3 s
+// With start: require, for a camera to answer, and for one that another program may still hold.
+constexpr double kRequireFoundS = 2, kRequireWaitS = 8;
 constexpr std::int64_t kRigPeriodUs = 1'000'000;
 
 std::array<std::optional<PictureSize>, 2> RigSizes(const std::optional<RigDescription>& rig) {
@@ -74,7 +75,9 @@ void StereoCaptureService::AwaitCameras() {
       const bool told = report.state == State::kStreaming ||
                         (!require && report.state == State::kSearching && report.attempts > 0);
       decided = decided && told;
-      if (!told && require && MonotonicSeconds() > end_s)
+      const bool missing = report.state == State::kSearching &&
+                           MonotonicSeconds() > end_s - kRequireWaitS + kRequireFoundS;
+      if (!told && require && (missing || MonotonicSeconds() > end_s))
         throw std::invalid_argument("start: require: " + report.text);
     }
     if (decided || MonotonicSeconds() > end_s) return;

@@ -57,13 +57,15 @@ CaptureHarness::CaptureHarness(const Options& options)
   bus_->Subscribe<service_status_t>(kServiceStatusChannel,
                                     [this](const service_status_t& m) { status_ = m; });
   bus_->Subscribe<stereo_rig_t>(kStereoRigChannel, [this](const stereo_rig_t&) { ++num_rigs_; });
-  std::vector<std::string> args{ProgramPath(), "--lcm-url", url_};
+  args_ = {ProgramPath(), "--lcm-url", url_};
   std::vector<std::string> settings{"camera.frame_rate_hz=" + std::to_string(options.frame_rate_hz),
                                     "camera.packet_size_bytes=9000"};
   settings.insert(settings.end(), options.settings.begin(), options.settings.end());
-  for (const std::string& setting : settings) args.insert(args.end(), {"--set", setting});
-  process_ = std::make_unique<ChildProcess>(args);
+  for (const std::string& setting : settings) args_.insert(args_.end(), {"--set", setting});
+  Restart();
 }
+
+void CaptureHarness::Restart() { process_ = std::make_unique<ChildProcess>(args_); }
 
 FillFrame CaptureHarness::Picture(int side) {
   return [this, side](const FakeFrame& frame) -> std::optional<std::int64_t> {

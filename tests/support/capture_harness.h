@@ -42,6 +42,9 @@ class CaptureHarness {
   };
   explicit CaptureHarness(const Options& options);
 
+  /// Starts the program again, once it has ended.
+  void Restart();
+
   FakeCamera& left() { return *left_; }
   FakeCamera& right() { return *right_; }
   ChildProcess& process() { return *process_; }
@@ -76,6 +79,7 @@ class CaptureHarness {
   std::array<std::set<std::int64_t>, 2> exposed_ticks_;  // by the cameras' threads
   std::unique_ptr<FakeCamera> left_, right_;
   std::string url_;
+  std::vector<std::string> args_;  // of the program
   std::unique_ptr<LcmBus> bus_;
   std::unique_ptr<ChildProcess> process_;
   std::vector<CaptureEvent> events_;

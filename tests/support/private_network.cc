@@ -49,10 +49,12 @@ bool SetUpLoopback() {
   std::strcpy(up.ifr_name, "lo");
   up.ifr_flags = IFF_UP | IFF_RUNNING;
   bool done = ioctl(fd, SIOCSIFFLAGS, &up) == 0;
-  ifreq second{};
-  std::strcpy(second.ifr_name, "lo:1");
-  second.ifr_addr = Address("127.0.0.2");
-  done = done && ioctl(fd, SIOCSIFADDR, &second) == 0;
+  for (const char* number : {"2", "3"}) {
+    ifreq more{};
+    std::strcpy(more.ifr_name, (std::string("lo:") + number).c_str());
+    more.ifr_addr = Address((std::string("127.0.0.") + number).c_str());
+    done = done && ioctl(fd, SIOCSIFADDR, &more) == 0;
+  }
   rtentry route{};
   route.rt_dst = Address("224.0.0.0");
   route.rt_genmask = Address("240.0.0.0");
