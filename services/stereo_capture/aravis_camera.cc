@@ -18,6 +18,7 @@ constexpr double kRefusedS = 1;       // until a camera that refused is asked ag
 constexpr double kExposurePollS = 1;  // where the camera chooses its exposure itself
 constexpr std::size_t kMaxTeardowns = 4;
 constexpr std::uint64_t kPopUs = 20'000;
+constexpr double kDistrustS = 0.1;     // longer than frames wait for each other in Aravis
 constexpr std::int64_t kMaxStale = 3;  // more in succession: the camera's clock was set back
 
 std::string StatusText(ArvBufferStatus status) {
@@ -133,6 +134,7 @@ bool AravisCamera::TakeControl(AravisConnection* connection, const std::string& 
 void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
   ++session_;
   newest_ns_ = num_stale_ = num_wrong_sizes_ = 0;
+  distrust_until_s_ = 0;
   bool first = true, streaming = false;
   double last_s = MonotonicSeconds(), last_poll_s = last_s;
   const bool polls = config_.exposure == "auto" || config_.gain == "auto";
@@ -225,9 +227,11 @@ std::string AravisCamera::Fault(const AravisConnection& connection, ArvBuffer* b
   arv_buffer_get_data(buffer, &size);
   if (size < format.image_bytes())
     return "frame of " + std::to_string(size) + " bytes, not as agreed";
+  // Told by a count alone, so whatever comes at that time is distrusted.
   const std::int64_t wrong_sizes = connection.Count("n_size_mismatch_errors");
   if (wrong_sizes != std::exchange(num_wrong_sizes_, wrong_sizes))
-    return "frame with packets larger than agreed";
+    distrust_until_s_ = MonotonicSeconds() + kDistrustS;
+  if (MonotonicSeconds() < distrust_until_s_) return "frame with packets larger than agreed";
   const auto time_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
   if (newest_ns_ > 0 && time_ns <= newest_ns_ && ++num_stale_ <= kMaxStale)
     return "frame that is no newer than the one before";

@@ -67,6 +67,7 @@ class AravisCamera final : public FrameSource {
   // Of this session: the newest good frame's time, frames in succession that are not newer, packets
   // of wrong size so far.
   std::int64_t newest_ns_{0}, num_stale_{0}, num_wrong_sizes_{0};
+  double distrust_until_s_{0};
   std::list<std::future<void>> teardowns_;
 
   mutable std::mutex mutex_;  // of the two below

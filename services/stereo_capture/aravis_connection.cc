@@ -1,7 +1,6 @@
 #include "services/stereo_capture/aravis_connection.h"
 
-#include <algorithm>
-
+#include "common/gige/gvsp_filter.h"
 #include "services/stereo_capture/aravis_error.h"
 
 namespace visavis {
@@ -65,7 +64,7 @@ std::vector<FoundCamera> FindCameras(const std::string& name, int wait_ms,
   return found;
 }
 
-AravisConnection::AravisConnection(const FoundCamera& found) {
+AravisConnection::AravisConnection(const FoundCamera& found) : address_(found.device.address) {
   const ObjectPtr<ArvDevice> device(OpenDevice(found));
   GlibError error;
   camera_.reset(arv_camera_new_with_device(device.get(), error.out()));
@@ -98,6 +97,8 @@ void AravisConnection::Start(const CameraConfig& config, std::size_t payload_byt
   ThrowOnError(error, "stream");
   if (!stream_) throw CameraLost("stream: cannot be made");
   if (ARV_IS_GV_STREAM(stream_.get())) {
+    if (!config.packet_socket)
+      FilterStreamSocket(arv_gv_stream_get_port(ARV_GV_STREAM(stream_.get())), address_);
     if (config.socket_buffer_bytes > 0) {
       g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED,
                    "socket-buffer-size", config.socket_buffer_bytes, nullptr);

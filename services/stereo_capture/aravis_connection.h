@@ -63,6 +63,7 @@ class AravisConnection {
     ArvStream* stream{nullptr};
   };
 
+  const std::string address_;  // of a GigE camera
   ObjectPtr<ArvCamera> camera_;
   ObjectPtr<ArvStream> stream_;
   std::shared_ptr<Return> return_{std::make_shared<Return>()};
