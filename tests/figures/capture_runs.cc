@@ -1,4 +1,4 @@
-// Prints a row of the README's table: two GigE Vision cameras over loopback, captured for a while.
+// Prints a row of the README.s table: two GigE Vision cameras over loopback, captured for a while.
 #include <cstdio>
 #include <cstdlib>
 #include <string>

@@ -9,7 +9,7 @@ namespace {
 using CaptureRatesTest = CaptureTest;
 
 /// Pairs of some seconds at a rate: none wrong, at most one missing (0.1 % of so few is none, but
-/// the machine of a test may have no time for 40 ms; scripts/figures capture runs a minute).
+/// the machine of a test may have no time for 40 ms; scripts/figures-capture runs a minute).
 void ExpectPairs(CaptureHarness* harness, double rate_hz, double seconds) {
   ASSERT_TRUE(harness->ReceivePairs(1, 10)) << harness->process().Err();
   harness->Receive(1);

@@ -277,9 +277,10 @@ TEST_F(AravisCameraTest, TruncatedAndLyingFramesAreNeverPublished) {
   for (int p = 1; p <= kPackets; ++p) sender.Data(oversized, p, 8000);
   sender.Trailer(oversized, kPackets + 1, 120);
   Random random(3);
-  for (int i = 0; i < 500; ++i) {  // noise, some of it with the right beginning
+  for (int i = 0; i < 500; ++i) {  // noise, half of it under the name of data
     std::vector<std::uint8_t> noise(static_cast<std::size_t>(random.Index(60)));
-    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random.Index(i % 2 ? 256 : 4));
+    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random.Index(256));
+    if (noise.size() > 4) noise[4] = i % 2 ? 3 : 4;
     sender.Raw(noise);
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
