@@ -85,7 +85,9 @@ class FakeCamera::Impl {
     to_drop_ = 0;
     mute_ = false;
     SetFrozen(false);
-    camera_.reset(arv_gv_fake_camera_new(address.c_str(), options_.serial.c_str()));
+    const std::string& file = options_.genicam_file;
+    camera_.reset(arv_gv_fake_camera_new_full(address.c_str(), options_.serial.c_str(),
+                                              file.empty() ? nullptr : file.c_str()));
     fake_ = arv_gv_fake_camera_get_fake_camera(camera_.get());
     Write(ARV_FAKE_CAMERA_REGISTER_WIDTH, static_cast<std::uint32_t>(options_.width));
     Write(ARV_FAKE_CAMERA_REGISTER_HEIGHT, static_cast<std::uint32_t>(options_.height));
@@ -204,6 +206,13 @@ std::uint32_t FakeCamera::ReadRegister(std::uint32_t address) const {
   std::uint32_t value = 0;
   if (powered()) arv_fake_camera_read_register(impl_->fake(), address, &value);
   return value;
+}
+
+std::string FakeCamera::GenicamText() {
+  const ObjectPtr<ArvFakeCamera> camera(arv_fake_camera_new("TEXT"));
+  std::size_t size = 0;
+  const char* text = arv_fake_camera_get_genicam_xml(camera.get(), &size);
+  return {text, size};
 }
 
 }  // namespace visavis

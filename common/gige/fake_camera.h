@@ -41,6 +41,9 @@ class FakeCamera {
     double clock_start_s{0}, drift_ppm{0};
     /// Share of the packets that the link loses. The camera cannot send them again.
     double lost_packet_share{0};
+    /// GenICam description of features beyond Aravis's own, whose registers are plain memory; the
+    /// name of a file. Empty: Aravis's.
+    std::string genicam_file{};
   };
 
   /// Powers the camera on. @throws std::runtime_error where the address cannot be had: it is not
@@ -72,6 +75,8 @@ class FakeCamera {
   /// Writes a register behind the client's back: a camera that does not do as it said.
   void WriteRegister(std::uint32_t address, std::uint32_t value);
   std::uint32_t ReadRegister(std::uint32_t address) const;
+  /// Aravis's own GenICam description, to be added to.
+  static std::string GenicamText();
 
  private:
   class Impl;

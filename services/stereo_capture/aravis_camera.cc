@@ -7,6 +7,7 @@
 
 #include "common/core/clock.h"
 #include "services/stereo_capture/aravis_error.h"
+#include "services/stereo_capture/aravis_trigger.h"
 
 namespace visavis {
 namespace {
@@ -17,7 +18,6 @@ constexpr double kFirstFrameS = 0.5;  // after the start, beside two periods
 constexpr double kRefusedS = 1;       // until a camera that refused is asked again
 constexpr double kExposurePollS = 1;  // where the camera chooses its exposure itself
 constexpr std::size_t kMaxTeardowns = 4;
-constexpr std::uint64_t kPopUs = 20'000;
 constexpr double kDistrustS = 0.1;     // longer than frames wait for each other in Aravis
 constexpr std::int64_t kMaxStale = 3;  // more in succession: the camera's clock was set back
 
@@ -133,6 +133,7 @@ bool AravisCamera::TakeControl(AravisConnection* connection, const std::string& 
 
 void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
   ++session_;
+  AravisTrigger trigger(connection->camera(), last_address_, config_);
   newest_ns_ = num_stale_ = num_wrong_sizes_ = 0;
   distrust_until_s_ = 0;
   bool first = true, streaming = false;
@@ -144,7 +145,7 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
   // stops when we leave.
   connection->set_farewell(false);
   while (!stop_) {
-    const auto buffer = connection->Pop(Trigger(*connection));
+    const auto buffer = connection->Pop(trigger.Pull());
     const double now_s = MonotonicSeconds();
     if (buffer) {
       last_s = now_s;
@@ -193,20 +194,6 @@ bool AravisCamera::WaitsForTrigger(const AravisConnection& connection) {
   report_.state = State::kStreaming;
   report_.text = std::string(SideName(side_)) + " camera: no trigger on " + config_.trigger_line;
   return true;
-}
-
-std::uint64_t AravisCamera::Trigger(const AravisConnection& connection) {
-  if (config_.trigger != "software") return kPopUs;
-  const std::int64_t now_us = SystemClock().NowUs();
-  if (now_us >= next_trigger_us_) {
-    GlibError error;
-    arv_camera_software_trigger(connection.camera(), error.out());
-    ThrowOnError(error, "software trigger");
-  }
-  const auto period_us = std::llround(1e6 * config_.period_s());
-  next_trigger_us_ = (now_us / period_us + 1) * period_us;
-  const auto wait_us = next_trigger_us_ - SystemClock().NowUs();
-  return static_cast<std::uint64_t>(std::clamp<std::int64_t>(wait_us, 0, kPopUs));
 }
 
 // A frame is one that Aravis holds for whole, of the size that was agreed, and newer than the last:

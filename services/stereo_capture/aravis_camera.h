@@ -47,9 +47,6 @@ class AravisCamera final : public FrameSource {
                     const CameraFormat& format);
   /// Whether silence is what it should be: nobody pulls the trigger, and the camera answers.
   bool WaitsForTrigger(const AravisConnection& connection);
-  /// Pulls a software trigger on the ticks of the host's clock that both cameras share.
-  /// @return how long to wait for a frame at most [us].
-  std::uint64_t Trigger(const AravisConnection& connection);
   void TearDown(std::unique_ptr<AravisConnection> connection);
   void Fail(State state, const std::string& text);
   void Wait(double seconds);
@@ -63,7 +60,6 @@ class AravisCamera final : public FrameSource {
   // The thread's own.
   std::string last_address_;
   std::int64_t session_{0};
-  std::int64_t next_trigger_us_{0};
   // Of this session: the newest good frame's time, frames in succession that are not newer, packets
   // of wrong size so far.
   std::int64_t newest_ns_{0}, num_stale_{0}, num_wrong_sizes_{0};

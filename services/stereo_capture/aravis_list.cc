@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <sstream>
 
 #include "services/stereo_capture/aravis_connection.h"
@@ -67,6 +68,9 @@ std::string ListCameras() {
     if (!found.device.user_name.empty()) text += " called " + found.device.user_name;
     text += '\n' + Supports(found);
   }
+  std::error_code none;
+  for (const auto& file : std::filesystem::directory_iterator("/dev/v4l/by-id", none))
+    text += file.path().string() + " (source: uvc)\n";
   return text.empty() ? "no GigE Vision or USB3 Vision camera answers\n" : text;
 }
 

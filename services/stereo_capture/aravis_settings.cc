@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/stereo_capture/aravis_error.h"
+#include "services/stereo_capture/aravis_trigger.h"
 
 namespace visavis {
 namespace {
@@ -177,6 +178,7 @@ class Setup {
                                : config_.trigger == "software" ? "Software"
                                                                : "Action1";
     const std::string key_value = "camera.trigger: " + config_.trigger;
+    if (config_.trigger == "action") SetActionKeys(key_value);
     RequireTriggerSource(key_value, source);
     arv_camera_set_trigger(camera_, source.c_str(), error.out());
     ThrowOnError(error, key_value);
@@ -266,6 +268,21 @@ class Setup {
     throw CameraRefusal("camera.ptp: true: this camera has neither PtpEnable nor GevIEEE1588");
   }
 
+  void SetActionKeys(const std::string& key_value) {
+    GlibError error;
+    if (Has("ActionSelector")) arv_camera_set_integer(camera_, "ActionSelector", 1, error.out());
+    ThrowOnError(error, key_value);
+    const std::pair<const char*, std::uint32_t> keys[] = {
+        {"ActionDeviceKey", kActionKeys.device_key},
+        {"ActionGroupKey", kActionKeys.group_key},
+        {"ActionGroupMask", kActionKeys.group_mask}};
+    for (const auto& [feature, value] : keys) {
+      if (!Has(feature)) throw CameraRefusal(key_value + ": this camera has no " + feature);
+      arv_camera_set_integer(camera_, feature, value, error.out());
+      ThrowOnError(error, key_value);
+    }
+  }
+
   void SetFrameRate() {
     if (!arv_camera_is_frame_rate_available(camera_, nullptr)) return;
     GlibError error;
@@ -352,15 +369,13 @@ CameraFormat ApplySettings(ArvCamera* camera, const CameraConfig& config,
   setup.SetTransport();
   setup.SetFeatures(features);
   const CameraFormat format = setup.ReadBack();
-  const auto size_text = [](int width, int height) {
-    return std::to_string(width) + "x" + std::to_string(height);
-  };
-  if (config.width_px > 0 && (format.width != config.width_px || format.height != config.height_px))
-    throw CameraRefusal("camera.width_px: " + size_text(config.width_px, config.height_px) +
-                        ": this camera makes it " + size_text(format.width, format.height));
-  if (rig_size && (format.width != rig_size->width || format.height != rig_size->height))
-    throw CameraRefusal("rig_file: " + size_text(rig_size->width, rig_size->height) +
-                        ": this camera's pictures are " + size_text(format.width, format.height));
+  const PictureSize size{format.width, format.height};
+  if (config.width_px > 0 && (size.width != config.width_px || size.height != config.height_px))
+    throw CameraRefusal("camera.width_px: " + ToText({config.width_px, config.height_px}) +
+                        ": this camera makes it " + ToText(size));
+  if (rig_size && (size.width != rig_size->width || size.height != rig_size->height))
+    throw CameraRefusal("rig_file: " + ToText(*rig_size) + ": this camera's pictures are " +
+                        ToText(size));
   return format;
 }
 

@@ -7,13 +7,9 @@
 #include "common/gige/gobject.h"
 #include "common/image/image.h"
 #include "services/stereo_capture/camera_config.h"
+#include "services/stereo_capture/picture_size.h"
 
 namespace visavis {
-
-/// Width and height that the rig was calibrated at.
-struct PictureSize {
-  int width{0}, height{0};
-};
 
 /// What a camera sends once it is set up.
 struct CameraFormat {

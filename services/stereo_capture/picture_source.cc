@@ -11,8 +11,10 @@
 namespace visavis {
 
 PictureSource::PictureSource(const StereoCaptureConfig& config,
-                             std::unique_ptr<PictureReader> reader, FrameQueue* queue)
-    : config_(config), reader_(std::move(reader)), queue_(*queue) {
+                             std::unique_ptr<PictureReader> reader,
+                             const std::array<std::optional<PictureSize>, 2>& rig_sizes,
+                             FrameQueue* queue)
+    : config_(config), reader_(std::move(reader)), rig_sizes_(rig_sizes), queue_(*queue) {
   if (!IsPictureFormat(config_.camera.pixel_format)) {
     throw std::invalid_argument(
         "camera.pixel_format: " + config_.camera.pixel_format +
@@ -52,7 +54,16 @@ bool PictureSource::Read() {
   }
   left_ = ToFrame(left, config_.camera.pixel_format, Side::kLeft);
   right_ = ToFrame(right, config_.camera.pixel_format, Side::kRight);
+  RequireRigSize(left_);
+  RequireRigSize(right_);
   return true;
+}
+
+void PictureSource::RequireRigSize(const CapturedFrame& frame) const {
+  const auto& size = rig_sizes_[Index(frame.side)];
+  if (!size || (size->width == frame.image.width && size->height == frame.image.height)) return;
+  throw std::invalid_argument("rig_file: " + ToText(*size) + ": the " + SideName(frame.side) +
+                              " picture is " + ToText({frame.image.width, frame.image.height}));
 }
 
 void PictureSource::Run() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "services/stereo_capture/frame_queue.h"
 #include "services/stereo_capture/frame_source.h"
 #include "services/stereo_capture/picture_reader.h"
+#include "services/stereo_capture/picture_size.h"
 #include "services/stereo_capture/stereo_capture_config.h"
 
 namespace visavis {
@@ -18,9 +20,10 @@ namespace visavis {
 /// of the period since start. A thread of its own reads ahead by one pair.
 class PictureSource final : public FrameSource {
  public:
-  /// @param queue aliased. @throws std::invalid_argument where the first pair cannot be read.
+  /// @param rig_sizes what pictures must measure, by Index(Side) @param queue aliased
+  /// @throws std::invalid_argument where the first pair cannot be read or is of another size.
   PictureSource(const StereoCaptureConfig& config, std::unique_ptr<PictureReader> reader,
-                FrameQueue* queue);
+                const std::array<std::optional<PictureSize>, 2>& rig_sizes, FrameQueue* queue);
   ~PictureSource() override;
 
   CameraReport Report() const override;
@@ -30,9 +33,11 @@ class PictureSource final : public FrameSource {
   void Run();
   /// The next pair; false at the end.
   bool Read();
+  void RequireRigSize(const CapturedFrame& frame) const;
 
   const StereoCaptureConfig config_;
   const std::unique_ptr<PictureReader> reader_;
+  const std::array<std::optional<PictureSize>, 2> rig_sizes_;
   FrameQueue& queue_;
   CapturedFrame left_, right_;  // read ahead
 

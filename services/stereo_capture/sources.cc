@@ -26,7 +26,7 @@ StereoSources MakeSources(const StereoCaptureConfig& config,
   if (config.source == "uvc") return TwoCameras<UvcCamera>(config, rig_sizes, queue);
   auto reader = config.source == "folder" ? OpenFolder(config.folder)
                                           : OpenVideos(config.left.device, config.right.device);
-  const auto both = std::make_shared<PictureSource>(config, std::move(reader), queue);
+  const auto both = std::make_shared<PictureSource>(config, std::move(reader), rig_sizes, queue);
   return {both, both};
 }
 

@@ -3,10 +3,11 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 
-#include "services/stereo_capture/aravis_settings.h"
 #include "services/stereo_capture/frame_queue.h"
 #include "services/stereo_capture/frame_source.h"
+#include "services/stereo_capture/picture_size.h"
 #include "services/stereo_capture/stereo_capture_config.h"
 
 namespace visavis {

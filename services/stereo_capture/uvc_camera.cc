@@ -130,10 +130,8 @@ double UvcCamera::RunOnce() {
     CapturedFrame frame = ToFrame(picture, config_.pixel_format, side_);
     if (rig_size_ &&
         (frame.image.width != rig_size_->width || frame.image.height != rig_size_->height)) {
-      throw CameraRefusal("rig_file: " + std::to_string(rig_size_->width) + "x" +
-                          std::to_string(rig_size_->height) + ": this camera's pictures are " +
-                          std::to_string(frame.image.width) + "x" +
-                          std::to_string(frame.image.height));
+      throw CameraRefusal("rig_file: " + ToText(*rig_size_) + ": this camera's pictures are " +
+                          ToText({frame.image.width, frame.image.height}));
     }
     frame.session = session_;
     frame.id = n;

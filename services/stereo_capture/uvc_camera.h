@@ -6,9 +6,10 @@
 #include <optional>
 #include <thread>
 
-#include "services/stereo_capture/aravis_settings.h"
+#include "services/stereo_capture/camera_config.h"
 #include "services/stereo_capture/frame_queue.h"
 #include "services/stereo_capture/frame_source.h"
+#include "services/stereo_capture/picture_size.h"
 
 namespace visavis {
 

@@ -41,7 +41,7 @@ class PictureSourceTest : public ::testing::Test {
 
   /// All frames until the source has finished, or @p count.
   std::vector<CapturedFrame> Run(std::size_t count = 1000) {
-    const StereoSources sources = MakeSources(config_, {}, &queue_);
+    const StereoSources sources = MakeSources(config_, rig_sizes_, &queue_);
     EXPECT_EQ(sources[0], sources[1]);
     std::vector<CapturedFrame> frames;
     const double end_s = MonotonicSeconds() + 5;
@@ -60,6 +60,7 @@ class PictureSourceTest : public ::testing::Test {
 
   const TemporaryFolder folder_;
   StereoCaptureConfig config_;
+  std::array<std::optional<PictureSize>, 2> rig_sizes_;
   FrameQueue queue_{64};
   CameraReport report_;
 };
@@ -120,6 +121,17 @@ TEST_F(PictureSourceTest, APictureThatCannotBeReadIsCountedAndLeftOut) {
   EXPECT_EQ(report_.bad_frames, 1);
   EXPECT_THAT(report_.last_error, HasSubstr("frames.csv:4: "));
   EXPECT_THAT(report_.last_error, HasSubstr("left_2.png: is no picture"));
+}
+
+TEST_F(PictureSourceTest, PicturesOfAnotherSizeThanTheRigsAreRefused) {
+  rig_sizes_ = {PictureSize{12, 8}, PictureSize{12, 8}};
+  EXPECT_EQ(Run().size(), 8u);
+  cv::imwrite(folder_ / "left_2.png", cv::Mat(6, 12, CV_8UC3, cv::Scalar(1, 2, 3)));
+  EXPECT_EQ(Run().size(), 6u);
+  EXPECT_EQ(report_.last_error, "rig_file: 12x8: the left picture is 12x6");
+  rig_sizes_[1] = {640, 480};
+  EXPECT_THAT([&] { Run(); }, ThrowsMessage<std::invalid_argument>(
+                                  HasSubstr("rig_file: 640x480: the right picture is 12x8")));
 }
 
 TEST_F(PictureSourceTest, NothingToReadIsRefusedWithItsName) {
