@@ -149,8 +149,8 @@ void StereoCaptureService::TellStatusOf(Side side) {
   const std::string name = SideName(side);
   StatusReporter& status = *context_.status;
   status.SetCondition(name, report.text);
-  if (!report.last_error.empty() && report.last_error != status.last_error())
-    status.Error(report.last_error, context_.clock->NowUs());
+  if (report.last_error != told_errors_[Index(side)])
+    status.Error(told_errors_[Index(side)] = report.last_error, context_.clock->NowUs());
   const auto count = [&](const char* what, std::int64_t value) {
     status.SetCounter(name + "_" + what, value);
   };

@@ -63,6 +63,7 @@ class StereoCaptureService final : public Service {
   std::array<std::int64_t, 2> last_usable_us_;
   std::int64_t next_rig_us_, seq_{0}, num_pairs_{0}, num_singles_{0}, told_unpaired_{0};
   Skews skews_;
+  std::array<std::string, 2> told_errors_;  // the cameras' newest, as last put into the status
   FrameQueue queue_;
   StereoSources sources_;  // last: their threads end first
 };
