@@ -86,9 +86,13 @@ class FakeCamera::Impl {
     mute_ = false;
     SetFrozen(false);
     const std::string& file = options_.genicam_file;
-    camera_.reset(arv_gv_fake_camera_new_full(address.c_str(), options_.serial.c_str(),
-                                              file.empty() ? nullptr : file.c_str()));
-    fake_ = arv_gv_fake_camera_get_fake_camera(camera_.get());
+    ObjectPtr<ArvGvFakeCamera> camera(arv_gv_fake_camera_new_full(
+        address.c_str(), options_.serial.c_str(), file.empty() ? nullptr : file.c_str()));
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      camera_ = std::move(camera);
+      fake_ = arv_gv_fake_camera_get_fake_camera(camera_.get());
+    }
     Write(ARV_FAKE_CAMERA_REGISTER_WIDTH, static_cast<std::uint32_t>(options_.width));
     Write(ARV_FAKE_CAMERA_REGISTER_HEIGHT, static_cast<std::uint32_t>(options_.height));
     Write(ARV_FAKE_CAMERA_REGISTER_PIXEL_FORMAT, ToAravis(options_.format));
@@ -132,15 +136,15 @@ class FakeCamera::Impl {
   }
 
   void Fill(ArvBuffer* buffer, guint32 exposure_us, guint32 gain, ArvPixelFormat format) {
-    {
-      std::unique_lock<std::mutex> lock(mutex_);
-      changed_.wait(lock, [this] { return !frozen_ || leaving_; });
-    }
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return !frozen_ || leaving_; });
+    ArvFakeCamera* const fake = fake_;
+    lock.unlock();
     std::size_t size = 0;
     auto* pixels =
         static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, &size)));
     guint32 period_us = 0;
-    arv_fake_camera_read_register(fake(), ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
+    arv_fake_camera_read_register(fake, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
                                   &period_us);
     const FakeFrame frame{number_++,
                           SystemClock().NowUs(),
@@ -161,7 +165,7 @@ class FakeCamera::Impl {
       lost = true;
     }
     // Aravis looks at this for each packet, in this very thread.
-    const std::lock_guard<std::mutex> lock(mutex_);
+    lock.lock();
     if (leaving_) return;
     g_object_set(camera_.get(), "gvsp-lost-ratio", lost ? 1.0 : options_.lost_packet_share,
                  nullptr);
