@@ -204,6 +204,7 @@ TEST_F(AravisCameraTest, ALineThatNobodyPullsIsSaidAndNotTakenForALoss) {
   EXPECT_EQ(camera_->Report().stalls, 0);
   fake.Die();  // now it is a loss
   EXPECT_TRUE(WaitFor([&] { return camera_->Report().stalls == 1; }, 8));
+  fake.Return();  // or saying farewell to it takes seconds
 }
 
 TEST_F(AravisCameraTest, ALossyLinkWithoutResendIsToldAndNeverPublished) {
