@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "common/core/clock.h"
 #include "tests/support/capture_test.h"
 
@@ -26,7 +28,9 @@ TEST_F(CaptureAwayTest, ADeadCameraIsToldTheOtherGoesOnAndPairsResumeSoonAfterIt
   harness.left().Return();
   const double returned_s = MonotonicSeconds();
   ASSERT_TRUE(harness.ReceivePairs(1, 5));
-  EXPECT_LT(MonotonicSeconds() - returned_s, 1.0 + 0.2);  // and the clock's settling
+  const double resumed_s = MonotonicSeconds() - returned_s;
+  std::printf("pairs %.2f s after it returned\n", resumed_s);
+  EXPECT_LT(resumed_s, 1.0 + 0.2);  // and the clock's settling
   ASSERT_TRUE(harness.ReceivePairs(30, 3));
   EXPECT_EQ(harness.num_wrong(), 0);
   // The right camera kept its rate: what was missing is the time until the left one was given up.
@@ -48,7 +52,9 @@ TEST_F(CaptureAwayTest, ACameraThatReturnsWithAnotherAddressIsFoundByItsSerial) 
   harness.left().Return("127.0.0.2");
   const double returned_s = MonotonicSeconds();
   ASSERT_TRUE(harness.ReceivePairs(1, 5));
-  EXPECT_LT(MonotonicSeconds() - returned_s, 1.0 + 0.2);
+  const double resumed_s = MonotonicSeconds() - returned_s;
+  std::printf("pairs %.2f s after it returned\n", resumed_s);
+  EXPECT_LT(resumed_s, 1.0 + 0.2);
   ASSERT_TRUE(harness.ReceivePairs(10, 3));
   EXPECT_EQ(harness.num_wrong(), 0);
 }

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "common/core/clock.h"
 #include "common/gige/gobject.h"
 #include "tests/support/capture_test.h"
@@ -21,7 +23,9 @@ TEST_F(CaptureHeldTest, ACameraThatACrashedClientHoldsIsHadWithinFourSeconds) {
   harness.Restart();
   const double restarted_s = MonotonicSeconds();
   ASSERT_TRUE(harness.ReceivePairs(1, 10)) << harness.process().Err();
-  EXPECT_LT(MonotonicSeconds() - restarted_s, 4);
+  const double resumed_s = MonotonicSeconds() - restarted_s;
+  std::printf("pairs %.2f s after it restarted\n", resumed_s);
+  EXPECT_LT(resumed_s, 4);
   ASSERT_TRUE(harness.ReceivePairs(10, 3));
   EXPECT_EQ(harness.num_wrong(), 0);
 }

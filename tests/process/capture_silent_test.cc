@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "common/core/clock.h"
 #include "tests/support/capture_test.h"
 
@@ -20,7 +22,9 @@ TEST_F(CaptureSilentTest, AFreezeOfTwoSecondsEndsInPairsAgainAndNoneIsWrong) {
   const double thawed_s = MonotonicSeconds();
   ASSERT_TRUE(harness.ReceivePairs(1, 8));
   // A camera that hung still obeys the connection that was given up until that says farewell.
-  EXPECT_LT(MonotonicSeconds() - thawed_s, 4);
+  const double resumed_s = MonotonicSeconds() - thawed_s;
+  std::printf("pairs %.2f s after it thawed\n", resumed_s);
+  EXPECT_LT(resumed_s, 4);
   ASSERT_TRUE(harness.ReceivePairs(30, 3));
   EXPECT_EQ(harness.num_wrong(), 0);
   EXPECT_LT(LongestRightGap(harness, before), 0.3 + 0.2);
@@ -34,7 +38,9 @@ TEST_F(CaptureSilentTest, ACameraThatFallsSilentButAnswersIsConnectedAnew) {
   harness.left().Unmute();
   const double unmuted_s = MonotonicSeconds();
   ASSERT_TRUE(harness.ReceivePairs(1, 5));
-  EXPECT_LT(MonotonicSeconds() - unmuted_s, 1.0 + 0.2);
+  const double resumed_s = MonotonicSeconds() - unmuted_s;
+  std::printf("pairs %.2f s after it unmuted\n", resumed_s);
+  EXPECT_LT(resumed_s, 1.0 + 0.2);
   ASSERT_TRUE(harness.ReceivePairs(30, 3));
   EXPECT_EQ(harness.num_wrong(), 0);
 }
