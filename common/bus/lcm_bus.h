@@ -32,8 +32,9 @@ class LcmBus final : public Bus {
 
   void SubscribeAll(BytesHandler handler, int queue_capacity) override;
 
-  /// Readable when HandleOne() will not block.
-  int fd() { return lcm_.getFileno(); }
+  /// Readable when HandleOne() will not block; -1 while nothing is subscribed. (Asking LCM for it
+  /// starts a thread that receives whatever is on the network, our own pictures too.)
+  int fd() { return subscriptions_.empty() ? -1 : lcm_.getFileno(); }
 
   /// Handles one message, waiting at most @p timeout_ms. @return whether one was handled.
   /// An exception of the handler is rethrown here, past LCM's C frames.

@@ -40,6 +40,19 @@ void CheckSize(const char* name, const ImageView& image, const Pinhole& camera) 
                      "x" + std::to_string(camera.height) + " as in the rig");
 }
 
+// All but the pixels; metadata is cleared.
+void SetFields(const ImageView& image, std::int64_t utime_us, image_t* message) {
+  message->utime = utime_us;
+  message->width = image.width;
+  message->height = image.height;
+  message->row_stride = image.stride;
+  for (const FormatCode& entry : kFormatCodes) {
+    if (entry.format == image.format) message->pixelformat = entry.code;
+  }
+  message->nmetadata = 0;
+  message->metadata.clear();
+}
+
 }  // namespace
 
 ImageView FromMessage(const image_t& m) {
@@ -85,13 +98,7 @@ StereoImages FromMessage(const images_t& message, const StereoRig& rig) {
 }
 
 void SetImage(const ImageView& image, std::int64_t utime_us, image_t* message) {
-  message->utime = utime_us;
-  message->width = image.width;
-  message->height = image.height;
-  message->row_stride = image.stride;
-  for (const FormatCode& entry : kFormatCodes) {
-    if (entry.format == image.format) message->pixelformat = entry.code;
-  }
+  SetFields(image, utime_us, message);
   const std::size_t size = image.format == PixelFormat::kJpeg
                                ? image.size
                                : static_cast<std::size_t>(image.stride) * image.height;
@@ -99,8 +106,13 @@ void SetImage(const ImageView& image, std::int64_t utime_us, image_t* message) {
   message->data.assign(image.data, image.data + std::min(size, image.size));
   message->data.resize(size, 0);
   message->size = static_cast<std::int32_t>(size);
-  message->nmetadata = 0;
-  message->metadata.clear();
+}
+
+void SwapImage(const ImageView& image, std::int64_t utime_us, std::vector<std::uint8_t>* pixels,
+               image_t* message) {
+  SetFields(image, utime_us, message);
+  message->data.swap(*pixels);
+  message->size = static_cast<std::int32_t>(message->data.size());
 }
 
 void AddMetadata(const std::string& key, std::int64_t value, image_t* message) {

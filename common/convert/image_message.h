@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/geometry/stereo_rig.h"
 #include "common/image/image.h"
@@ -27,6 +28,11 @@ StereoImages FromMessage(const images_t& message, const StereoRig& rig);
 
 /// Copies a picture into @p message (memory reused) with its time; metadata is cleared.
 void SetImage(const ImageView& image, std::int64_t utime_us, image_t* message);
+
+/// As SetImage() for a raw picture that fills @p pixels exactly, without a copy: the message and
+/// *@p pixels trade their memory. A second call of std::swap trades it back.
+void SwapImage(const ImageView& image, std::int64_t utime_us, std::vector<std::uint8_t>* pixels,
+               image_t* message);
 
 /// Adds one named number to a picture's metadata.
 void AddMetadata(const std::string& key, std::int64_t value, image_t* message);

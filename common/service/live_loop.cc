@@ -38,12 +38,12 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
   std::int64_t next_status_us = clock.NowUs(), retry_us = 0;
   const auto next_wake_us = [&] { return std::max(service->next_wake_us(), retry_us); };
   sd_notify(0, "READY=1");
-  pollfd fds[] = {{stop.fd(), POLLIN, 0}, {bus->fd(), POLLIN, 0}};
+  pollfd fds[] = {{stop.fd(), POLLIN, 0}, {bus->fd(), POLLIN, 0}, {service->wake_fd(), POLLIN, 0}};
   while (!service->finished()) {
     const std::int64_t now_us = clock.NowUs();
     if (now_us < next_status_us - 2 * kStatusPeriodUs)
       next_status_us = now_us;  // the clock was set back
-    if (now_us < retry_us - kRetryUs) retry_us = 0;
+    if (now_us >= retry_us || now_us < retry_us - kRetryUs) retry_us = 0;
     if (now_us >= next_status_us) {
       status->SetCondition("receive_buffer", DescribeSmallBuffer(bus->GetReceiveBuffer()));
       Guard(status, clock, [&] { service->UpdateStatus(); });
@@ -51,7 +51,7 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
       sd_notify(0, "WATCHDOG=1");
       next_status_us = std::max(next_status_us + kStatusPeriodUs, now_us);
     }
-    if (next_wake_us() <= now_us) {
+    if (next_wake_us() <= now_us || (fds[2].revents & POLLIN)) {
       retry_us = now_us + kRetryUs;
       Guard(status, clock, [&] {
         service->Wake();
@@ -59,8 +59,12 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
       });
     }
 
-    const timespec wait = TimeUntil(clock.NowUs(), std::min(next_status_us, next_wake_us()));
-    if (ppoll(fds, 2, &wait, nullptr) < 0) {
+    fds[2].fd = retry_us > 0 ? -1 : service->wake_fd();  // a wake that failed is not tried at once
+    fds[2].revents = 0;
+    const std::int64_t retry_due_us = retry_us > 0 ? retry_us : Service::kNever;
+    const timespec wait =
+        TimeUntil(clock.NowUs(), std::min({next_status_us, next_wake_us(), retry_due_us}));
+    if (ppoll(fds, 3, &wait, nullptr) < 0) {
       if (errno == EINTR) continue;
       throw std::system_error(errno, std::generic_category(), "poll");
     }

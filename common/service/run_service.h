@@ -41,12 +41,17 @@ struct HasReplayFilter<
     std::void_t<decltype(XService::ReplayFilter(std::declval<const XConfig&>(), ""))>>
     : std::true_type {};
 
+template <typename XService, typename = void>
+struct HasList : std::false_type {};
+template <typename XService>
+struct HasList<XService, std::void_t<decltype(XService::List())>> : std::true_type {};
+
 /// The whole life of a service process: signals, flags, configuration, bus, loop, exit code 0
 /// (stopped), 1 (failed while running) or 2 (bad flags or configuration).
 ///
 /// XService is a Service with a constructor (const XConfig&, const ServiceContext&), a
 /// `static ServiceTraits Traits()` and, where it replays, `static Replay::Filter ReplayFilter(const
-/// XConfig&, const std::string& prefix)`.
+/// XConfig&, const std::string& prefix)` and, where it offers --list, `static std::string List()`.
 template <typename XService, typename XConfig>
 int RunService(int argc, char* argv[]) {
   const ServiceTraits traits = XService::Traits();
@@ -54,6 +59,9 @@ int RunService(int argc, char* argv[]) {
     const StopSignal stop;
     const ServiceFlags flags = ParseServiceFlags(traits, argc, argv);
     if (flags.exit_now) return flags.exit_code;
+    if constexpr (HasList<XService>::value) {
+      if (flags.list) return PrintText(XService::List()), kExitOk;
+    }
     const auto config = LoadConfig<XConfig>(flags.config_file, flags.overrides);
     if (flags.print_config) PrintText(DumpConfig(config) + "\n");
     if (flags.check_config || flags.print_config) return kExitOk;

@@ -28,6 +28,8 @@ class Service {
   /// When Wake() is due, in the clock's microseconds; kNever: no timer.
   virtual std::int64_t next_wake_us() const { return kNever; }
   virtual void Wake() {}
+  /// A file descriptor that asks for Wake() while it is readable; -1: none. Live only.
+  virtual int wake_fd() const { return -1; }
   /// True once there is nothing left to do: the process ends with exit code 0.
   virtual bool finished() const { return false; }
   /// Called once a second before the status goes out.

@@ -23,6 +23,7 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
   app.add_option("--lcm-url", flags.lcm_url,
                  std::string("LCM provider [LCM_DEFAULT_URL, then ") + kDefaultLcmUrl + "]");
   app.add_option("--prefix", flags.prefix, "goes before every channel, e.g. ROBOT1_");
+  if (!traits.list_help.empty()) app.add_flag("--list", flags.list, traits.list_help);
   std::vector<std::string> alias_values(traits.aliases.size());
   for (std::size_t i = 0; i < traits.aliases.size(); ++i) {
     const FlagAlias& alias = traits.aliases[i];

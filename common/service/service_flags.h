@@ -21,6 +21,7 @@ struct ServiceTraits {
   bool has_config{true};           ///< offers --config, --set, --check-config, --print-config
   bool replays{false};             ///< offers --replay IN --record OUT
   bool runs_fast{false};           ///< offers --fast --record OUT: no network, as fast as it can
+  std::string list_help;           ///< offers --list, which does this; empty: no such flag
   std::vector<FlagAlias> aliases;  ///< further flags
 };
 
@@ -31,6 +32,7 @@ struct ServiceFlags {
   std::vector<std::string> overrides;  ///< KEY=VALUE each, in the order given
   bool check_config{false};
   bool print_config{false};
+  bool list{false};
   bool fast{false};
   bool keep_images{false};
   std::string replay;  ///< log to read; empty: live

@@ -135,6 +135,24 @@ TEST_F(ServiceLifeTest, AWakeThatFailsForEverIsToldAndTakesNoWholeCore) {
   EXPECT_TRUE(HandleUntil([&] { return last_out_ == 6; }));
 }
 
+TEST_F(ServiceLifeTest, AFileDescriptorAsksForWakesAsLongAsItIsReadable) {
+  int num_wakes = 0;
+  bus_->Subscribe<head_pose_t>("ECHO_WAKE", [&](const head_pose_t&) { ++num_wakes; });
+  Start({"--set", "num_nudges=7"});
+  EXPECT_TRUE(HandleUntil([&] { return num_wakes >= 7; }));
+  const int before = num_statuses_;
+  EXPECT_TRUE(HandleUntil([&] { return num_statuses_ >= before + 2; }));
+  EXPECT_EQ(num_wakes, 7);
+}
+
+TEST_F(ServiceLifeTest, AWakeForAFileDescriptorThatFailsIsTriedAgainAndTakesNoWholeCore) {
+  Start({"--set", "num_nudges=9", "--set", "fail_on_seq=5"});
+  ASSERT_TRUE(HandleUntil([&] { return status_.rejected >= 5; }));
+  EXPECT_LE(status_.rejected, 11 * num_statuses_);  // ten a second
+  Send(6);
+  EXPECT_TRUE(HandleUntil([&] { return last_out_ == 6; }));
+}
+
 TEST_F(ServiceLifeTest, WhatDoesNotDecodeIsToldAndTheServiceGoesOn) {
   Start();
   bus_->Publish("ECHO_IN", rigid_transform_t{});

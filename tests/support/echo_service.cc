@@ -1,12 +1,30 @@
 #include "tests/support/echo_service.h"
 
+#include <sys/eventfd.h>
+#include <unistd.h>
+
 #include <stdexcept>
 
 namespace visavis {
+namespace {
+
+int MakeNudges(int count) {
+  if (count == 0) return -1;
+  return eventfd(static_cast<unsigned>(count), EFD_CLOEXEC | EFD_NONBLOCK | EFD_SEMAPHORE);
+}
+
+}  // namespace
 
 EchoService::EchoService(const EchoConfig& config, const ServiceContext& context)
-    : config_(config), context_(context), next_wake_us_(config.period_ms > 0 ? 0 : kNever) {
+    : config_(config),
+      context_(context),
+      nudges_fd_(MakeNudges(config.num_nudges)),
+      next_wake_us_(config.period_ms > 0 ? 0 : kNever) {
   context_.bus->Subscribe<head_pose_t>(config_.input, [this](const head_pose_t& m) { Handle(m); });
+}
+
+EchoService::~EchoService() {
+  if (nudges_fd_ >= 0) close(nudges_fd_);
 }
 
 ServiceTraits EchoService::Traits() {
@@ -35,8 +53,10 @@ void EchoService::Handle(const head_pose_t& message) {
 
 void EchoService::Wake() {
   if (num_wakes_ == config_.fail_on_seq) throw std::runtime_error("wake: must not be the failing");
+  eventfd_t nudge = 0;
+  if (nudges_fd_ >= 0) eventfd_read(nudges_fd_, &nudge);
   Publish("ECHO_WAKE", num_wakes_++);
-  next_wake_us_ = context_.clock->NowUs() + 1000 * config_.period_ms;
+  if (config_.period_ms > 0) next_wake_us_ = context_.clock->NowUs() + 1000 * config_.period_ms;
 }
 
 bool EchoService::finished() const {

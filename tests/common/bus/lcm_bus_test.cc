@@ -30,6 +30,14 @@ TEST_F(LcmBusTest, DeliversWhatWasPublished) {
   EXPECT_EQ(received.euler_zyx_CM_rad[2], -0.25);
 }
 
+TEST_F(LcmBusTest, WithoutASubscriptionThereIsNothingToWaitFor) {
+  EXPECT_EQ(bus_.fd(), -1);  // else LCM would receive what we publish ourselves
+  bus_.Publish("A", head_pose_t{});
+  EXPECT_EQ(bus_.fd(), -1);
+  bus_.Subscribe<head_pose_t>("A", [](const head_pose_t&) {});
+  EXPECT_GE(bus_.fd(), 0);
+}
+
 TEST_F(LcmBusTest, ThePrefixStandsBeforeTheChannel) {
   std::string name;
   bus_.SubscribeAll([&](const std::string& channel, const std::uint8_t*, int) { name = channel; },

@@ -77,6 +77,14 @@ TEST_F(ServiceFlagsTest, FlagsThatMakeNoSenseTogetherAreBadUsage) {
   }
 }
 
+TEST_F(ServiceFlagsTest, AListIsOfferedWhereThereIsOne) {
+  EXPECT_EQ(Parse({"--list"}).exit_code, kExitBadUsage);
+  traits_.list_help = "print what there is";
+  const ServiceFlags flags = Parse({"--list"});
+  EXPECT_TRUE(flags.list && !flags.exit_now);
+  EXPECT_FALSE(Parse({}).list);
+}
+
 TEST_F(ServiceFlagsTest, WhatAServiceDoesNotOfferIsRefused) {
   traits_ = {};
   traits_.name = "plain";
