@@ -244,6 +244,7 @@ void RecogniserService::ProcessWaiting() {
 }
 
 void RecogniserService::ProcessPair(const images_t& message, std::int64_t received_us) {
+  background_.IsFinished();  // a replay's wait is no frame's time
   timer_.Restart();
   timer_.Enter(Stage::kDecode);
   const Estimate* estimate = nullptr;

@@ -50,7 +50,7 @@ ServiceTraits SimulatorService::Traits() {
       {"--subject", "scene.subject", "who stands before the cameras, adult_a ..."},
       {"--seconds", "seconds", "how long; 0: until stopped"},
       {"--seed", "seed", "of all that is random"},
-      {"--export-mesh", "export_mesh", "FILE: writes the subject's head there as OBJ"}};
+      {"--export-mesh", "export_mesh", "FILE: writes the subject's head there as OBJ; ends then, unless --seconds"}};
   return traits;
 }
 
@@ -106,7 +106,8 @@ std::int64_t SimulatorService::next_wake_us() const {
 }
 
 bool SimulatorService::finished() const {
-  return config_.seconds > 0 && TimeOf(FrameTime(frame_)) >= config_.seconds;
+  if (config_.seconds == 0) return !config_.export_mesh.empty();
+  return TimeOf(FrameTime(frame_)) >= config_.seconds;
 }
 
 void SimulatorService::Wake() {

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "common/core/clock.h"
+#include "services/recogniser/background_thread.h"
 #include "services/recogniser/head_file.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
@@ -45,12 +46,14 @@ std::vector<Frame> Run(const std::string& log, std::uint64_t seed, const HeadGeo
   LogPlayer player(log);
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
-  RefinedEstimator estimator(settings, head, player.rig());
+  BackgroundThread background(true);
+  RefinedEstimator estimator(settings, head, player.rig(), &background);
   StageTimer timer(&MonotonicSeconds);
   std::vector<Frame> frames;
   std::int64_t start_us = -1;
   while (const LogPlayer::Pair* pair = player.Next()) {
     if (start_us < 0) start_us = pair->frame.utime_us;
+    background.IsFinished();  // waited for outside of the time
     timer.Restart();
     const Estimate& estimate = estimator.Process(pair->frame, pair->step, &timer);
     timer.Enter(Stage::kOther);

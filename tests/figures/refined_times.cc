@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "services/recogniser/background_thread.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
@@ -57,12 +58,14 @@ Times Play(const std::string& log, bool search, std::uint64_t seed) {
   LogPlayer player(log);
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
-  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig());
+  BackgroundThread background(true);
+  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig(), &background);
   StageTimer timer(&ProcessorSeconds);
   Times times;
   bool was_tracking = false;
   while (const LogPlayer::Pair* pair = player.Next()) {
     if (search) estimator.Reset();
+    background.IsFinished();  // waited for outside of the time
     const double start = ProcessorSeconds();
     timer.Restart();
     const bool tracking =

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/core/clock.h"
+#include "services/recogniser/background_thread.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
@@ -37,7 +38,8 @@ Counts Run(const std::string& log, std::uint64_t seed) {
   LogPlayer player(log);
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
-  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig());
+  BackgroundThread background(true);
+  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig(), &background);
   StageTimer timer(&MonotonicSeconds);
   Counts counts;
   std::optional<RigidTransform> last;
@@ -53,6 +55,7 @@ Counts Run(const std::string& log, std::uint64_t seed) {
       found = false;
     }
     last = pair->truth;
+    background.IsFinished();  // waited for outside of the time
     timer.Restart();
     const Estimate& estimate = estimator.Process(pair->frame, pair->step, &timer);
     timer.Enter(Stage::kOther);

@@ -27,7 +27,9 @@ struct Reading {
 /// Tracks @p head through the recording.
 Reading Track(const std::string& log, const RecogniserConfig& config, const HeadGeometry& head) {
   LogPlayer player(log, config);
-  RefinedEstimator estimator(config.RefinedSettings(), head, player.rig());
+  RefinedSettings settings = config.RefinedSettings();
+  settings.refined.learned_views = 0;  // the bundle of the whole recording is ours
+  RefinedEstimator estimator(settings, head, player.rig());
   StageTimer timer(&NoTime);
   const auto X_RM = MakeTransform(Eigen::Matrix3d::Identity(), -head.p_MR_m);
   Reading reading;

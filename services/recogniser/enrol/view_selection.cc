@@ -6,21 +6,13 @@
 #include "services/recogniser/refined/head_geometry.h"
 
 namespace visavis {
-namespace {
-
-constexpr double kSameView_rad = 0.05;
-constexpr int kSettled = 5;  ///< frames of a track before its pose is taken
-
-}  // namespace
 
 void ViewSelection::Add(std::int64_t frame, const RigidTransform* X_CM) {
-  tracked_in_a_row_ = X_CM != nullptr ? tracked_in_a_row_ + 1 : 0;
-  if (tracked_in_a_row_ < kSettled) return;
-  const Eigen::Vector3d direction = TowardsCamera(*X_CM);
-  const bool known = std::any_of(views_.begin(), views_.end(), [&](const SelectedView& view) {
-    return direction.dot(TowardsCamera(view.X_CM)) > std::cos(kSameView_rad);
-  });
-  if (!known) views_.push_back({frame, *X_CM});
+  if (X_CM == nullptr) {
+    sides_.Unsettle();
+  } else if (sides_.Take(*X_CM)) {
+    views_.push_back({frame, *X_CM});
+  }
 }
 
 std::vector<SelectedView> ViewSelection::Views(std::size_t most) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry/rigid_transform.h"
+#include "services/recogniser/refined/new_sides.h"
 
 namespace visavis {
 
@@ -34,8 +35,8 @@ class ViewSelection {
   Range DirectionRange() const;
 
  private:
+  NewSides sides_;
   std::vector<SelectedView> views_;
-  int tracked_in_a_row_{0};
 };
 
 }  // namespace visavis

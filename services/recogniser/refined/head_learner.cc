@@ -1,14 +1,10 @@
 #include "services/recogniser/refined/head_learner.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace visavis {
 namespace {
 
-constexpr double kSameView_rad = 0.05;
-constexpr int kSettled = 5;      ///< frames of a track before its pose is taken
 constexpr int kFirstFrame = 30;  ///< with a track, at which learning begins, if only of one view
 constexpr int kFrames = 15, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
@@ -82,28 +78,21 @@ HeadLearner::~HeadLearner() = default;
 
 void HeadLearner::Forget() {
   work_.reset();  // what is under way keeps its own
-  seen_.clear();
+  sides_.Forget();
   new_views_.clear();
-  frames_ = in_a_row_ = learned_views_ = 0;
+  frames_ = learned_views_ = 0;
   begun_ = -1;
 }
 
 void HeadLearner::Add(const StereoFrame& frame, const RigidTransform& X_CM,
                       const std::array<ColorModel, 2>& colors) {
-  const auto views = static_cast<int>(seen_.size());
-  if (begun_ >= 0 || views >= most_views_ || ++in_a_row_ < kSettled) return;
-  const Eigen::Vector3d direction = TowardsCamera(X_CM);
-  const bool known = std::any_of(seen_.begin(), seen_.end(), [&](const RigidTransform& X) {
-    return direction.dot(TowardsCamera(X)) > std::cos(kSameView_rad);
-  });
-  if (known) return;
+  if (begun_ >= 0 || num_views() >= most_views_ || !sides_.Take(X_CM)) return;
   new_views_.push_back(ViewOf(frame, X_CM, &pair_));
   colors_ = colors;
-  seen_.push_back(X_CM);
 }
 
 bool HeadLearner::IsDue() const {
-  const auto views = static_cast<int>(seen_.size());
+  const int views = num_views();
   if (views == 0 || views == learned_views_ || frames_ < kFirstFrame) return false;
   return views >= most_views_ || views >= kGrowth * learned_views_;
 }
@@ -121,12 +110,13 @@ HeadLearner::Learned HeadLearner::Step() {
     }
     return {};
   }
-  const int frames = kFrames + kFramesPerView * static_cast<int>(seen_.size());
+  const int frames = kFrames + kFramesPerView * num_views();
   if (frames_ < begun_ + frames || !background_->IsFinished()) return {};
   begun_ = -1;
-  in_a_row_ = 0;
-  learned_views_ = static_cast<int>(seen_.size());
-  for (std::size_t i = 0; i < seen_.size(); ++i) seen_[i] = work_->bundle->pose(i);
+  learned_views_ = num_views();
+  sides_.Unsettle();
+  for (std::size_t i = 0; i < sides_.poses().size(); ++i)
+    sides_.SetPose(i, work_->bundle->pose(i));
   Learned learned = std::move(work_->learned);
   if (learned_views_ >= most_views_) work_.reset();
   return learned;

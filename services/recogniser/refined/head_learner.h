@@ -9,6 +9,7 @@
 #include "services/recogniser/refined/color_model.h"
 #include "services/recogniser/refined/face_frame.h"
 #include "services/recogniser/refined/head_bundle.h"
+#include "services/recogniser/refined/new_sides.h"
 
 namespace visavis {
 
@@ -25,6 +26,8 @@ class HeadLearner {
 
   /// Another head from here on.
   void Forget();
+  /// A frame without the track.
+  void Lose() { sides_.Unsettle(); }
   /// A pair that shows the head at @p X_CM well, in the frame of what was learned last. Takes it if
   /// it shows a new side.
   void Add(const StereoFrame& frame, const RigidTransform& X_CM,
@@ -40,6 +43,7 @@ class HeadLearner {
  private:
   struct Work;  // what the background touches
 
+  int num_views() const { return static_cast<int>(sides_.poses().size()); }
   bool IsDue() const;
 
   const RefinerConfig config_;
@@ -50,10 +54,10 @@ class HeadLearner {
   const int most_views_;
   NoBackground no_background_;
   Background* const background_;
-  std::vector<RigidTransform> seen_;  ///< X_CM of the views
-  std::vector<HeadView> new_views_;   ///< not bundled yet
+  NewSides sides_;                   ///< of the views
+  std::vector<HeadView> new_views_;  ///< not bundled yet
   std::array<ColorModel, 2> colors_;  ///< of the last view
-  int frames_{0}, in_a_row_{0}, learned_views_{0}, begun_{-1};
+  int frames_{0}, learned_views_{0}, begun_{-1};
   std::shared_ptr<Work> work_;
 };
 

@@ -299,6 +299,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   }
   timer->Enter(Stage::kOther);
   Judge(good);
+  if (!good) learner_.Lose();
   if (good && BothEyes()) LookForEnrolled();
   if (good && BothEyes() && texture_.learned() && !texture_.fixed()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;

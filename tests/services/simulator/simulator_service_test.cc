@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -197,6 +198,15 @@ TEST_F(SimulatorServiceTest, TruthIsNanWhileTheHeadIsAwayOrOutOfView) {
   }
   EXPECT_GT(with, 10);
   EXPECT_GT(without, 8);
+}
+
+TEST_F(SimulatorServiceTest, AnExportedHeadIsAllUnlessAskedForMore) {
+  config_.export_mesh = folder_ / "head.obj";
+  config_.seconds = 0;
+  EXPECT_TRUE(Run().events.empty());
+  EXPECT_GT(std::filesystem::file_size(config_.export_mesh), 1000u);
+  config_.seconds = 0.2;
+  EXPECT_FALSE(Run().On(kStereoImagesChannel).empty());
 }
 
 TEST_F(SimulatorServiceTest, RefusesARigWithoutAnArm) {

@@ -95,6 +95,14 @@ TEST_F(HeadLearnerTest, AHeadThatIsForgottenBeforeItWasLearnedNeverComes) {
   for (int i = 0; i < 30; ++i) ASSERT_FALSE(learner.Step().head) << i;
 }
 
+TEST_F(HeadLearnerTest, ATrackThatIsLostAgainAndAgainGivesNoView) {
+  HeadLearner learner = Learner(nullptr);
+  for (int i = 0; i < 2 * kLatest; ++i) {
+    if (i % 4 == 0) learner.Lose();
+    ASSERT_FALSE(Show(&learner, 6 * (i / 8 % 4)).head) << i;
+  }
+}
+
 TEST_F(HeadLearnerTest, OfNoViewsNothingIsLearned) {
   HeadLearner learner = Learner(nullptr, 0);
   int frames;
