@@ -13,6 +13,9 @@ namespace {
 
 constexpr int kSensorSize = 2048;  // of Aravis's camera [px]
 
+// A camera that waits answers no client.
+constexpr std::chrono::milliseconds kLongestWait{100};
+
 std::uint8_t Luminance(const std::uint8_t* p) {
   return static_cast<std::uint8_t>((77 * p[0] + 150 * p[1] + 29 * p[2] + 128) >> 8);
 }
@@ -131,30 +134,29 @@ void GigeCameras::Show(std::shared_ptr<const StereoPicture> picture) {
   changed_.notify_all();
 }
 
-std::shared_ptr<const StereoPicture> GigeCameras::PictureAt(std::int64_t tick_us,
-                                                            std::int64_t wait_us) {
+std::shared_ptr<const StereoPicture> GigeCameras::TakePicture(Side side, std::int64_t tick_us) {
   std::shared_ptr<const StereoPicture> found;
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait_for(lock, std::chrono::microseconds(wait_us), [&] {
+  changed_.wait_for(lock, kLongestWait, [&] {
     for (const auto& picture : shown_) {
-      if (picture && picture->due_us == tick_us) found = picture;
+      const bool taken = picture && picture->due_us > sent_us_[side] && picture->due_us <= tick_us;
+      if (taken && (!found || picture->due_us > found->due_us)) found = picture;
     }
     // A later one is there: this one never comes.
     return found || leaving_ || (shown_[0] && shown_[0]->due_us > tick_us);
   });
+  if (found) {
+    sent_us_[side] = found->due_us;
+  } else if (!leaving_ && cameras_[side]) {
+    ++lost_;
+    cameras_[side]->Drop(1);
+  }
   return found;
 }
 
 std::optional<std::int64_t> GigeCameras::Fill(Side side, const FakeFrame& frame) {
-  const std::int64_t tick_us = frame.utime_us / frame.period_us * frame.period_us;
-  auto picture = PictureAt(tick_us, frame.period_us / 2);
-  if (!picture) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (leaving_ || !cameras_[side]) return std::nullopt;
-    ++lost_;
-    cameras_[side]->Drop(1);
-    return std::nullopt;
-  }
+  auto picture = TakePicture(side, frame.utime_us / frame.period_us * frame.period_us);
+  if (!picture) return std::nullopt;
   const Pinhole& eye = side == kLeft ? rig_.left : rig_.right;
   FillFrameFromRgb(side == kLeft ? picture->left : picture->right, eye.width, eye.height, frame);
   const std::int64_t exposed_us = picture->exposed_us;

@@ -35,10 +35,10 @@ void FillFrameFromRgb(const std::vector<std::uint8_t>& rgb, int width, int heigh
 /// The simulator's pictures as frames of two GigE Vision cameras, which fail on command.
 ///
 /// The cameras run free, as their client set them: they expose at multiples of the period by the
-/// host's clock, so both at one instant, and the picture of that tick must have been shown by then
-/// (or up to half a period later, as over a slow link), or the frame is lost. The frame is stamped
-/// by the camera's own clock so that the middle of the client's exposure is exposed_us. Threads:
-/// each camera has one that reads the pictures shown; everything else is the caller's.
+/// host's clock, so both at one instant. A picture that is shown after its tick leaves late, as
+/// over a slow link; one that does not come within 0.1 s is a lost frame. The frame is stamped by
+/// the camera's own clock so that the middle of the client's exposure is exposed_us. Threads: each
+/// camera has one that reads the pictures shown; everything else is the caller's.
 class GigeCameras {
  public:
   /// Powers both on. @throws std::runtime_error where an address cannot be had, and
@@ -74,7 +74,8 @@ class GigeCameras {
   };
 
   std::optional<std::int64_t> Fill(Side side, const FakeFrame& frame);
-  std::shared_ptr<const StereoPicture> PictureAt(std::int64_t tick_us, std::int64_t wait_us);
+  /// The newest picture due by a tick that this camera has not sent; null: the frame is lost.
+  std::shared_ptr<const StereoPicture> TakePicture(Side side, std::int64_t tick_us);
   void PowerOn(Side side, const GigeCameraConfig& config, const Pinhole& eye);
   void SetExposure(Side side);
   void Begin(const CameraFault& fault);
@@ -90,9 +91,10 @@ class GigeCameras {
   std::vector<Fault> faults_;
   std::atomic<std::int64_t> lost_{0};
 
-  std::mutex mutex_;  // of shown_, leaving_ and the pointers cameras_
+  std::mutex mutex_;  // of shown_, sent_us_, leaving_, the pointers cameras_
   std::condition_variable changed_;
   std::array<std::shared_ptr<const StereoPicture>, 3> shown_;  // newest first
+  std::array<std::int64_t, 2> sent_us_{0, 0};                  // due_us of the last sent
   bool leaving_{false};
   std::vector<std::shared_ptr<StereoPicture>> pool_;
   std::array<std::unique_ptr<FakeCamera>, 2> cameras_;  // last: their threads use the rest
