@@ -91,12 +91,13 @@ SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceC
     if (!context_.live) throw std::invalid_argument("cameras: gige: must be publish with --fast");
     cameras_ = std::make_unique<GigeCameras>(config_.gige, rig_.rig, config_.frame_rate_hz,
                                              config_.sensor.exposure_ms);
-    start_us_ = cameras_->NextTick(context_.clock->NowUs() + 100'000);
     due_us_ = start_us_;
+    TimeFrame();
+    start_us_ = frame_us_;  // the first exposure, as it is without cameras
   } else {
     picture_ = std::make_shared<StereoPicture>(rig_.rig);
+    TimeFrame();
   }
-  TimeFrame();
 }
 
 SimulatorService::~SimulatorService() = default;
