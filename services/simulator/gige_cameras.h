@@ -47,6 +47,8 @@ class GigeCameras {
               double exposure_ms);
   ~GigeCameras();
 
+  /// How long before its tick a picture may be shown.
+  std::int64_t longest_ahead_us() const { return 2 * period_us_; }
   /// When the frame after @p utime_us leaves the cameras.
   std::int64_t NextTick(std::int64_t utime_us) const;
   /// Shutter time as the client set it: the exposure ends at the tick.
@@ -93,7 +95,7 @@ class GigeCameras {
 
   std::mutex mutex_;  // of shown_, sent_us_, leaving_, the pointers cameras_
   std::condition_variable changed_;
-  std::array<std::shared_ptr<const StereoPicture>, 3> shown_;  // newest first
+  std::array<std::shared_ptr<const StereoPicture>, 6> shown_;  // newest first
   std::array<std::int64_t, 2> sent_us_{0, 0};                  // due_us of the last sent
   bool leaving_{false};
   std::vector<std::shared_ptr<StereoPicture>> pool_;

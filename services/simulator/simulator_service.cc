@@ -91,7 +91,7 @@ SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceC
     if (!context_.live) throw std::invalid_argument("cameras: gige: must be publish with --fast");
     cameras_ = std::make_unique<GigeCameras>(config_.gige, rig_.rig, config_.frame_rate_hz,
                                              config_.sensor.exposure_ms);
-    due_us_ = start_us_;
+    tick_us_ = start_us_;
     TimeFrame();
     start_us_ = frame_us_;  // the first exposure, as it is without cameras
   } else {
@@ -112,8 +112,9 @@ std::int64_t SimulatorService::ArmTime(std::int64_t sample) const {
 
 void SimulatorService::TimeFrame() {
   if (cameras_) {
-    due_us_ = cameras_->NextTick(due_us_);
-    frame_us_ = due_us_ - cameras_->exposure_us() / 2;
+    tick_us_ = cameras_->NextTick(tick_us_);
+    frame_us_ = tick_us_ - cameras_->exposure_us() / 2;
+    due_us_ = tick_us_ - cameras_->longest_ahead_us();
   } else {
     frame_us_ = FrameTime(frame_);
     due_us_ = frame_us_ + std::llround(1000 * config_.readout_ms);
@@ -121,8 +122,8 @@ void SimulatorService::TimeFrame() {
 }
 
 void SimulatorService::SkipLateFrames() {
-  // Cameras do not wait: a picture must be begun before its tick.
-  while (cameras_ ? due_us_ < context_.clock->NowUs()
+  // Cameras do not wait: a picture must be there at its tick.
+  while (cameras_ ? tick_us_ < context_.clock->NowUs() + render_us_
                   : FrameTime(frame_ + 1) < context_.clock->NowUs()) {
     ++frame_;
     TimeFrame();
@@ -185,6 +186,7 @@ void SimulatorService::PublishArmStates(std::int64_t until_us) {
 void SimulatorService::PrepareFrame() {
   if (context_.live) SkipLateFrames();
   if (cameras_) picture_ = cameras_->Blank();
+  const std::int64_t begin_us = context_.clock->NowUs();
   const auto truth = world_.Render(
       TimeOf(frame_us_), frame_, [this](double time_s) { return CameraAt(time_s); },
       View(rig_.rig.right, &picture_->right), View(rig_.rig.left, &picture_->left));
@@ -192,7 +194,8 @@ void SimulatorService::PrepareFrame() {
   truth_X_CM_.reset();
   if (truth.head_present && truth.head_visible_share >= kSeenShare) truth_X_CM_ = truth.X_CM;
   picture_->exposed_us = frame_us_;
-  picture_->due_us = due_us_;
+  picture_->due_us = tick_us_;
+  render_us_ = context_.clock->NowUs() - begin_us;
   if (cameras_) {
     cameras_->Show(std::move(picture_));
   } else {
@@ -225,7 +228,8 @@ void SimulatorService::PublishFrame() {
   context_.bus->Publish(kHeadPoseTruthChannel,
                         TruthMessage(frame_us_, frame_, truth_X_CM_ ? &*truth_X_CM_ : nullptr));
   if (!cameras_) context_.bus->Publish(kStereoImagesChannel, images_);
-  context_.status->Processed(1e-3 * static_cast<double>(context_.clock->NowUs() - frame_us_));
+  context_.status->Processed(
+      cameras_ ? std::nan("") : 1e-3 * static_cast<double>(context_.clock->NowUs() - frame_us_));
   ++frame_;
   TimeFrame();
   prepared_ = false;

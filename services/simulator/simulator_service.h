@@ -26,9 +26,10 @@ namespace visavis {
 /// NaN while less than a tenth of the head is in the right picture.
 ///
 /// With cameras: gige the pictures leave as frames of two GigE Vision cameras, at these cameras'
-/// ticks, and whoever captures them publishes STEREO_IMAGES and STEREO_RIG. Truth and arm states
-/// carry the host's time as before; the captured pair's differs from its truth's by what the
-/// capture's map of the cameras' clocks is wrong.
+/// ticks, rendered and shown to them (and their truth published) up to two periods ahead, so that
+/// a rendering that takes longer once makes none late; and whoever captures them publishes
+/// STEREO_IMAGES and STEREO_RIG. Truth and arm states carry the host's time as before; the captured
+/// pair's differs from its truth's by what the capture's map of the cameras' clocks is wrong.
 class SimulatorService final : public Service {
  public:
   static ServiceTraits Traits();
@@ -75,7 +76,8 @@ class SimulatorService final : public Service {
 
   std::int64_t start_us_;
   std::int64_t frame_{0}, next_arm_{0}, next_rig_us_;
-  std::int64_t frame_us_{0}, due_us_{0};  // exposure of the pair in work, and when it goes out
+  std::int64_t frame_us_{0}, due_us_{0};    // exposure of the pair in work, and when it goes out
+  std::int64_t tick_us_{0}, render_us_{0};  // of the cameras; how long the last rendering took
   std::int64_t late_{0};
   bool prepared_{false};
   std::optional<RigidTransform> truth_X_CM_;  // of the prepared frame; none: no head
