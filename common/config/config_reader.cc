@@ -139,7 +139,10 @@ void ConfigSource::Override(const std::string& assignment) {
 
 std::string ConfigSource::PlaceOf(const std::string& dotted_key) const {
   for (const auto& [key, flag] : overrides_) {
-    if (key == dotted_key || key.rfind(dotted_key + ".", 0) == 0) return flag;
+    if (key == dotted_key || key.rfind(dotted_key + ".", 0) == 0 ||
+        dotted_key.rfind(key + ".", 0) == 0) {
+      return flag;
+    }
   }
   YAML::Node node;
   node.reset(root_);

@@ -42,7 +42,8 @@ class ConfigSource {
 
 /// Visitor that fills a struct from one mapping: `template <class A> void Serialize(A* a)` calls
 /// a->Visit(key, &member[, rule]). A missing key keeps its default; an unknown key, a key given
-/// twice, a value of the wrong type or one that breaks its rule is a ConfigError.
+/// twice, a value of the wrong type or one that breaks its rule is a ConfigError. A vector of such
+/// structs is a list of mappings; its members' keys read "list.0.key".
 class ConfigReader {
  public:
   ConfigReader(const ConfigSource& source, const YAML::Node& node, std::string prefix)
@@ -68,6 +69,10 @@ class ConfigReader {
   struct IsStruct<
       T, std::void_t<decltype(std::declval<T&>().Serialize(static_cast<ConfigReader*>(nullptr)))>>
       : std::true_type {};
+  template <typename T>
+  struct IsStructList : std::false_type {};
+  template <typename T>
+  struct IsStructList<std::vector<T>> : IsStruct<T> {};
 
   template <typename T>
   void VisitIf(const std::string& key, T* value, const Rule<T>* rule) {
@@ -80,6 +85,16 @@ class ConfigReader {
       ConfigReader reader(source_, child, prefix_ + key + ".");
       value->Serialize(&reader);
       reader.RejectUnknownKeys();
+    } else if constexpr (IsStructList<T>::value) {
+      if (!child.IsSequence()) Fail(key, child, "must be a list of mappings");
+      value->clear();
+      for (std::size_t i = 0; i < child.size(); ++i) {
+        const std::string item = key + "." + std::to_string(i);
+        if (!child[i].IsMap()) Fail(item, child[i], "must be a mapping of keys");
+        ConfigReader reader(source_, child[i], prefix_ + item + ".");
+        value->emplace_back().Serialize(&reader);
+        reader.RejectUnknownKeys();
+      }
     } else {
       try {
         *value = child.as<T>();

@@ -39,6 +39,10 @@ class ConfigWriter {
   struct HasSerialize<
       T, std::void_t<decltype(std::declval<T&>().Serialize(static_cast<ConfigWriter*>(nullptr)))>>
       : std::true_type {};
+  template <typename T>
+  struct IsStructList : std::false_type {};
+  template <typename T>
+  struct IsStructList<std::vector<T>> : HasSerialize<T> {};
 
   // A number by its shortest text that reads back the same.
   static std::string Plain(double value) {
@@ -53,7 +57,18 @@ class ConfigWriter {
     return list;
   }
   template <typename T>
-  static const T& Plain(const T& value) {
+  static auto Plain(const std::vector<T>& values)
+      -> std::enable_if_t<HasSerialize<T>::value, YAML::Node> {
+    YAML::Node list(YAML::NodeType::Sequence);
+    for (T value : values) {
+      ConfigWriter writer;
+      value.Serialize(&writer);
+      list.push_back(writer.node_);
+    }
+    return list;
+  }
+  template <typename T>
+  static auto Plain(const T& value) -> std::enable_if_t<!IsStructList<T>::value, const T&> {
     return value;
   }
 

@@ -1,6 +1,7 @@
 #include "common/geometry/truth_track.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace visavis {
@@ -43,6 +44,8 @@ TruthTrack::TruthTrack(std::vector<TruthSample> samples,
                                   IsEarlier);
       }));
   synchronous_ = 2 * partners >= std::min(samples_.size(), frame_utimes_us.size());
+  if (synchronous_) return;
+  for (std::int64_t& utime_us : jump_utimes_us_) utime_us -= kSameExposure_us;
 }
 
 std::optional<TruthSample> TruthTrack::At(std::int64_t utime_us) const {
@@ -53,9 +56,13 @@ std::optional<TruthSample> TruthTrack::At(std::int64_t utime_us) const {
   if (synchronous_ || next == samples_.begin()) return std::nullopt;
   const TruthSample& last = *(next - 1);
   const std::int64_t gap_us = next->utime_us - last.utime_us;
-  if (gap_us > kMaxGapUs || last.X_CM.has_value() != next->X_CM.has_value()) return std::nullopt;
+  if (gap_us > kMaxGapUs) return std::nullopt;
+  if (last.X_CM.has_value() != next->X_CM.has_value() || IsJump(last, *next)) {
+    const TruthSample& nearest = 2 * (utime_us - last.utime_us) < gap_us ? last : *next;
+    if (std::abs(nearest.utime_us - utime_us) > kSameExposure_us) return std::nullopt;
+    return nearest;
+  }
   if (!last.X_CM) return TruthSample{utime_us, {}, {}};
-  if (IsJump(last, *next)) return std::nullopt;
   const double s = static_cast<double>(utime_us - last.utime_us) / static_cast<double>(gap_us);
   return TruthSample{utime_us, Interpolate(*last.X_CM, *next->X_CM, s), {}};
 }

@@ -194,7 +194,7 @@ void FakeCamera::Freeze() { impl_->SetFrozen(true); }
 void FakeCamera::Thaw() { impl_->SetFrozen(false); }
 void FakeCamera::Mute() { impl_->mute_ = true; }
 void FakeCamera::Unmute() { impl_->mute_ = false; }
-void FakeCamera::Drop(int num_frames) { impl_->to_drop_ = num_frames; }
+void FakeCamera::Drop(int num_frames) { impl_->to_drop_ += num_frames; }
 void FakeCamera::StepClock(double seconds) { impl_->clock_step_us_ += std::llround(1e6 * seconds); }
 void FakeCamera::Die() { impl_->PowerOff(); }
 void FakeCamera::Return(const std::string& address) {

@@ -59,7 +59,8 @@ class FakeCamera {
   /// Answers, but sends no frames until Unmute(); they are numbered and lost.
   void Mute();
   void Unmute();
-  /// Loses the next frames.
+  /// Loses the next frames. Called while a frame is filled, by the one that fills it: that one is
+  /// the first.
   void Drop(int num_frames);
   /// The camera's clock jumps.
   void StepClock(double seconds);

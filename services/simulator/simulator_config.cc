@@ -12,6 +12,13 @@ void SimulatorConfig::ValidateOrThrow() const {
   }
   scenario.ValidateOrThrow();
   scene.ValidateOrThrow();
+  gige.ValidateOrThrow();
+  if (cameras != "gige" && !gige.faults.empty()) {
+    throw FieldError("gige.faults", "given", "needs cameras: gige");
+  }
+  if (!export_rig.empty() && !publish_arm) {
+    throw FieldError("export_rig", export_rig, "needs publish_arm: the file holds the arm");
+  }
   if (arm_rate_hz < frame_rate_hz) {
     throw FieldError("arm_rate_hz", std::to_string(arm_rate_hz), "must not be below frame_rate_hz");
   }

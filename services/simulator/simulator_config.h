@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/config/rule.h"
+#include "services/simulator/gige_config.h"
 #include "services/simulator/scenario.h"
 #include "services/simulator/simulated_world.h"
 
@@ -27,7 +28,10 @@ struct SimulatorConfig {
     a->Visit("publish_camera_pose", &publish_camera_pose);
     a->Visit("image_format", &image_format, OneOf({"raw", "jpeg"}));
     a->Visit("jpeg_quality", &jpeg_quality, InRange(1, 100));
+    a->Visit("cameras", &cameras, OneOf({"publish", "gige"}));
+    a->Visit("gige", &gige);
     a->Visit("export_mesh", &export_mesh);
+    a->Visit("export_rig", &export_rig);
   }
   /// @throws FieldError naming key, value and rule.
   void ValidateOrThrow() const;
@@ -46,6 +50,9 @@ struct SimulatorConfig {
   bool publish_camera_pose{false};       ///< CAMERA_POSE, one a pair
   std::string image_format{"raw"};
   int jpeg_quality{90};
+  std::string cameras{"publish"};  ///< publish: on the bus | gige: as two GigE Vision cameras
+  GigeConfig gige;
+  std::string export_rig;   ///< rig.yaml for who captures is written there; empty: nowhere
   std::string export_mesh;  ///< the subject's head is written there as OBJ; empty: nowhere
 };
 

@@ -32,6 +32,10 @@ HandEye MakeHandEye(const RigDescription& rig) {
   return {Arm(rig.arm->urdf, rig.arm->base_link, rig.arm->tip_link), rig.arm->X_WB, *rig.X_HC};
 }
 
+RgbView View(const Pinhole& eye, std::vector<std::uint8_t>* pixels) {
+  return {pixels->data(), eye.width, eye.height, 3 * eye.width};
+}
+
 Eigen::VectorXd Posture() {
   return Eigen::Map<const Eigen::VectorXd>(kDemoArmPosture.data(),
                                            static_cast<Eigen::Index>(kDemoArmPosture.size()));
@@ -64,10 +68,9 @@ SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceC
              static_cast<std::uint64_t>(config.seed)),
       trajectory_(hand_eye_, Posture(),
                   [this](double time_s) { return world_.scenario().CameraPose(time_s); }),
-      right_rgb_(static_cast<std::size_t>(3 * rig_.rig.right.width * rig_.rig.right.height)),
-      left_rgb_(static_cast<std::size_t>(3 * rig_.rig.left.width * rig_.rig.left.height)),
       start_us_(context.live ? context.clock->NowUs() + 100'000 : kFastStartUs),
       next_rig_us_(start_us_) {
+  if (!config_.export_rig.empty()) SaveRigFile(rig_, config_.export_rig);
   if (!config_.export_mesh.empty()) ExportHead(world_.figure(), config_.export_mesh);
   rig_message_ = ToMessage(rig_, 0);
   if (!config_.publish_arm) {
@@ -84,6 +87,17 @@ SimulatorService::SimulatorService(const SimulatorConfig& config, const ServiceC
   images_.n_images = 2;
   images_.image_types = {images_t::LEFT, images_t::RIGHT};
   images_.images.resize(2);
+  if (config_.cameras == "gige") {
+    if (!context_.live) throw std::invalid_argument("cameras: gige: must be publish with --fast");
+    cameras_ = std::make_unique<GigeCameras>(config_.gige, rig_.rig, config_.frame_rate_hz,
+                                             config_.sensor.exposure_ms);
+    tick_us_ = start_us_;
+    TimeFrame();
+    start_us_ = frame_us_;  // the first exposure, as it is without cameras
+  } else {
+    picture_ = std::make_shared<StereoPicture>(rig_.rig);
+    TimeFrame();
+  }
 }
 
 SimulatorService::~SimulatorService() = default;
@@ -96,37 +110,61 @@ std::int64_t SimulatorService::ArmTime(std::int64_t sample) const {
   return start_us_ + std::llround(1e6 * static_cast<double>(sample) / config_.arm_rate_hz);
 }
 
-std::int64_t SimulatorService::FrameDue() const {
-  return FrameTime(frame_) + std::llround(1000 * config_.readout_ms);
+void SimulatorService::TimeFrame() {
+  if (cameras_) {
+    tick_us_ = cameras_->NextTick(tick_us_);
+    frame_us_ = tick_us_ - cameras_->exposure_us() / 2;
+    due_us_ = tick_us_ - cameras_->longest_ahead_us();
+  } else {
+    frame_us_ = FrameTime(frame_);
+    due_us_ = frame_us_ + std::llround(1000 * config_.readout_ms);
+  }
+}
+
+void SimulatorService::SkipLateFrames() {
+  // Cameras do not wait: a picture must be there at its tick.
+  while (cameras_ ? tick_us_ < context_.clock->NowUs() + render_us_
+                  : FrameTime(frame_ + 1) < context_.clock->NowUs()) {
+    ++frame_;
+    TimeFrame();
+    ++late_;
+    context_.status->Dropped(1);
+  }
 }
 
 std::int64_t SimulatorService::next_wake_us() const {
   if (context_.live && !prepared_) return 0;
-  return config_.publish_arm ? std::min(ArmTime(next_arm_), FrameDue()) : FrameDue();
+  return config_.publish_arm ? std::min(ArmTime(next_arm_), due_us_) : due_us_;
 }
 
 bool SimulatorService::finished() const {
   if (config_.seconds == 0) return !config_.export_mesh.empty();
-  return TimeOf(FrameTime(frame_)) >= config_.seconds;
+  return TimeOf(frame_us_) >= config_.seconds;
 }
 
 void SimulatorService::Wake() {
   if (finished()) return;
+  if (cameras_) cameras_->Update(TimeOf(context_.clock->NowUs()));
   PublishRig(context_.clock->NowUs());
   PublishArmStates(context_.clock->NowUs());
   // Live, rendering takes longer than the readout: it is done ahead.
-  if (!prepared_ && (context_.live || context_.clock->NowUs() >= FrameDue())) PrepareFrame();
-  if (context_.clock->NowUs() >= FrameDue()) PublishFrame();
+  if (!prepared_ && (context_.live || context_.clock->NowUs() >= due_us_)) PrepareFrame();
+  if (context_.clock->NowUs() >= due_us_) PublishFrame();
 }
 
-void SimulatorService::UpdateStatus() { context_.status->SetCounter("late_pairs", late_); }
+void SimulatorService::UpdateStatus() {
+  context_.status->SetCounter("late_pairs", late_);
+  if (!cameras_) return;
+  context_.status->SetCounter("lost_frames", cameras_->num_lost());
+  context_.status->SetCondition("faults", cameras_->Faults());
+}
 
 RigidTransform SimulatorService::CameraAt(double time_s) {
   return hand_eye_.CameraPose(trajectory_.At(time_s).q);
 }
 
 void SimulatorService::PublishRig(std::int64_t now_us) {
-  if (now_us < next_rig_us_) return;
+  if (cameras_ || now_us < next_rig_us_) return;
   next_rig_us_ = std::max(next_rig_us_ + 1'000'000, now_us);
   rig_message_.utime = now_us;
   context_.bus->Publish(kStereoRigChannel, rig_message_);
@@ -147,24 +185,30 @@ void SimulatorService::PublishArmStates(std::int64_t until_us) {
 }
 
 void SimulatorService::PrepareFrame() {
-  // A machine too slow for the rate leaves pairs out, as a camera would.
-  while (context_.live && FrameTime(frame_ + 1) < context_.clock->NowUs()) {
-    ++frame_;
-    ++late_;
-    context_.status->Dropped(1);
-  }
-  const std::int64_t utime_us = FrameTime(frame_);
+  if (context_.live) SkipLateFrames();
+  if (cameras_) picture_ = cameras_->Blank();
+  const std::int64_t begin_us = context_.clock->NowUs();
   const auto truth = world_.Render(
-      TimeOf(utime_us), frame_, [this](double time_s) { return CameraAt(time_s); },
-      {right_rgb_.data(), rig_.rig.right.width, rig_.rig.right.height, 3 * rig_.rig.right.width},
-      {left_rgb_.data(), rig_.rig.left.width, rig_.rig.left.height, 3 * rig_.rig.left.width});
+      TimeOf(frame_us_), frame_, [this](double time_s) { return CameraAt(time_s); },
+      View(rig_.rig.right, &picture_->right), View(rig_.rig.left, &picture_->left));
   camera_X_WC_ = truth.X_WC;
   truth_X_CM_.reset();
   if (truth.head_present && truth.head_visible_share >= kSeenShare) truth_X_CM_ = truth.X_CM;
-  images_.utime = utime_us;
-  FillImage(rig_.rig.left, left_rgb_, &left_jpeg_, &images_.images[0]);
-  FillImage(rig_.rig.right, right_rgb_, &right_jpeg_, &images_.images[1]);
+  picture_->exposed_us = frame_us_;
+  picture_->due_us = tick_us_;
+  render_us_ = context_.clock->NowUs() - begin_us;
+  if (cameras_) {
+    cameras_->Show(std::move(picture_));
+  } else {
+    FillImages();
+  }
   prepared_ = true;
+}
+
+void SimulatorService::FillImages() {
+  images_.utime = frame_us_;
+  FillImage(rig_.rig.left, picture_->left, &left_jpeg_, &images_.images[0]);
+  FillImage(rig_.rig.right, picture_->right, &right_jpeg_, &images_.images[1]);
 }
 
 void SimulatorService::FillImage(const Pinhole& camera, const std::vector<std::uint8_t>& rgb,
@@ -179,15 +223,16 @@ void SimulatorService::FillImage(const Pinhole& camera, const std::vector<std::u
 }
 
 void SimulatorService::PublishFrame() {
-  const std::int64_t utime_us = images_.utime;
   PublishArmStates(context_.clock->NowUs());
   if (config_.publish_camera_pose)
-    context_.bus->Publish(kCameraPoseChannel, ToMessage(camera_X_WC_, utime_us));
+    context_.bus->Publish(kCameraPoseChannel, ToMessage(camera_X_WC_, frame_us_));
   context_.bus->Publish(kHeadPoseTruthChannel,
-                        TruthMessage(utime_us, frame_, truth_X_CM_ ? &*truth_X_CM_ : nullptr));
-  context_.bus->Publish(kStereoImagesChannel, images_);
-  context_.status->Processed(1e-3 * static_cast<double>(context_.clock->NowUs() - utime_us));
+                        TruthMessage(frame_us_, frame_, truth_X_CM_ ? &*truth_X_CM_ : nullptr));
+  if (!cameras_) context_.bus->Publish(kStereoImagesChannel, images_);
+  context_.status->Processed(
+      cameras_ ? std::nan("") : 1e-3 * static_cast<double>(context_.clock->NowUs() - frame_us_));
   ++frame_;
+  TimeFrame();
   prepared_ = false;
 }
 

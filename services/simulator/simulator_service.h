@@ -10,6 +10,7 @@
 #include "common/service/service.h"
 #include "common/service/service_flags.h"
 #include "services/simulator/arm_trajectory.h"
+#include "services/simulator/gige_cameras.h"
 #include "services/simulator/simulator_config.h"
 #include "visavis/arm_state_t.hpp"
 #include "visavis/images_t.hpp"
@@ -23,11 +24,18 @@ namespace visavis {
 /// A pair is rendered ahead of its exposure, since the motion is known; then it goes out readout_ms
 /// after the exposure, behind the arm states of that time, as it would from real cameras. Truth is
 /// NaN while less than a tenth of the head is in the right picture.
+///
+/// With cameras: gige the pictures leave as frames of two GigE Vision cameras, at these cameras'
+/// ticks, rendered and shown to them (and their truth published) up to two periods ahead, so that
+/// a rendering that takes longer once makes none late; and whoever captures them publishes
+/// STEREO_IMAGES and STEREO_RIG. Truth and arm states carry the host's time as before; the captured
+/// pair's differs from its truth's by what the capture's map of the cameras' clocks is wrong.
 class SimulatorService final : public Service {
  public:
   static ServiceTraits Traits();
 
-  /// @throws std::invalid_argument for a rig without an arm.
+  /// @throws std::invalid_argument for a rig without an arm, and for cameras: gige unless live;
+  /// std::runtime_error where a camera's address cannot be had.
   SimulatorService(const SimulatorConfig& config, const ServiceContext& context);
   ~SimulatorService() override;
 
@@ -42,12 +50,15 @@ class SimulatorService final : public Service {
   }
   std::int64_t FrameTime(std::int64_t frame) const;
   std::int64_t ArmTime(std::int64_t sample) const;
-  /// When the pair in work goes out.
-  std::int64_t FrameDue() const;
+  /// Sets the times of the pair @p frame_, which is now in work.
+  void TimeFrame();
+  /// A machine too slow for the rate leaves pairs out, as a camera would.
+  void SkipLateFrames();
   RigidTransform CameraAt(double time_s);
   void PublishArmStates(std::int64_t until_us);
   void PublishRig(std::int64_t now_us);
   void PrepareFrame();
+  void FillImages();
   void PublishFrame();
   void FillImage(const Pinhole& camera, const std::vector<std::uint8_t>& rgb, JpegEncoder* jpeg,
                  image_t* image);
@@ -59,11 +70,14 @@ class SimulatorService final : public Service {
   HandEye hand_eye_;
   SimulatedWorld world_;
   ArmTrajectory trajectory_;
-  std::vector<std::uint8_t> right_rgb_, left_rgb_;
+  std::unique_ptr<GigeCameras> cameras_;    // none: pictures go on the bus
+  std::shared_ptr<StereoPicture> picture_;  // in work
   JpegEncoder right_jpeg_, left_jpeg_;
 
   std::int64_t start_us_;
   std::int64_t frame_{0}, next_arm_{0}, next_rig_us_;
+  std::int64_t frame_us_{0}, due_us_{0};    // exposure of the pair in work, and when it goes out
+  std::int64_t tick_us_{0}, render_us_{0};  // of the cameras; how long the last rendering took
   std::int64_t late_{0};
   bool prepared_{false};
   std::optional<RigidTransform> truth_X_CM_;  // of the prepared frame; none: no head

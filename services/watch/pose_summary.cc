@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "common/convert/pose_message.h"
 #include "common/geometry/head_angles.h"
@@ -10,7 +12,7 @@
 namespace visavis {
 namespace {
 
-constexpr std::size_t kMaxUnmatched = 64;
+constexpr std::size_t kMaxKept = 400;  // 2 s of the fastest cameras
 constexpr double kDegree = M_PI / 180;
 
 const char* StatusWord(int status) {
@@ -41,35 +43,34 @@ void PoseSummary::AddPose(const head_pose_t& pose) {
   newest_ = pose;
   ++num_poses_;
   ++poses_since_;
-  const auto truth = std::find_if(unmatched_truths_.begin(), unmatched_truths_.end(),
-                                  [&](const head_pose_t& t) { return t.utime == pose.utime; });
-  if (truth != unmatched_truths_.end()) {
-    AddError(pose, *truth);
-    unmatched_truths_.erase(unmatched_truths_.begin(), truth + 1);
-  } else {
-    unmatched_poses_.push_back(pose);
-    if (unmatched_poses_.size() > kMaxUnmatched) unmatched_poses_.pop_front();
-  }
+  poses_.push_back(pose);
+  if (poses_.size() > kMaxKept) poses_.pop_front();
 }
 
 void PoseSummary::AddTruth(const head_pose_t& truth) {
-  const auto pose = std::find_if(unmatched_poses_.begin(), unmatched_poses_.end(),
-                                 [&](const head_pose_t& p) { return p.utime == truth.utime; });
-  if (pose != unmatched_poses_.end()) {
-    AddError(*pose, truth);
-    unmatched_poses_.erase(unmatched_poses_.begin(), pose + 1);
-  } else {
-    unmatched_truths_.push_back(truth);
-    if (unmatched_truths_.size() > kMaxUnmatched) unmatched_truths_.pop_front();
-  }
+  truths_.push_back({truth.utime, std::nullopt, {}});
+  if (HasPose(truth)) truths_.back().X_CM = FromMessage(truth);
+  if (truths_.size() > kMaxKept) truths_.pop_front();
 }
 
-void PoseSummary::AddError(const head_pose_t& pose, const head_pose_t& truth) {
-  if (!HasPose(pose) || !HasPose(truth)) return;
-  const RecognitionError error = ComputeRecognitionError(FromMessage(truth), FromMessage(pose));
-  sum_squared_mm_ += 1e6 * error.position.squaredNorm();
-  sum_squared_deg_ += std::pow(error.total_angle / kDegree, 2);
-  ++num_errors_;
+void PoseSummary::AddErrors() {
+  std::vector<std::int64_t> utimes_us;
+  for (const head_pose_t& pose : poses_) utimes_us.push_back(pose.utime);
+  const TruthTrack track({truths_.begin(), truths_.end()}, utimes_us);
+  const std::int64_t known_until_us = track.samples().empty() ? 0 : track.samples().back().utime_us;
+  std::deque<head_pose_t> waiting;
+  for (const head_pose_t& pose : poses_) {
+    const auto truth = track.At(pose.utime);
+    if (truth && truth->X_CM && HasPose(pose)) {
+      const auto error = ComputeRecognitionError(*truth->X_CM, FromMessage(pose));
+      sum_squared_mm_ += 1e6 * error.position.squaredNorm();
+      sum_squared_deg_ += std::pow(error.total_angle / kDegree, 2);
+      ++num_errors_;
+    } else if (!truth && pose.utime > known_until_us) {
+      waiting.push_back(pose);
+    }
+  }
+  poses_ = std::move(waiting);
 }
 
 void PoseSummary::AddTiming(const recogniser_timing_t& timing) {
@@ -81,6 +82,7 @@ std::string PoseSummary::Header() {
 }
 
 std::string PoseSummary::Line(double elapsed_s) {
+  AddErrors();
   const bool any = poses_since_ > 0;
   const double nan = std::nan("");
   const auto pose = [&](double value) { return any ? value : nan; };

@@ -4,6 +4,7 @@
 #include <deque>
 #include <string>
 
+#include "common/geometry/truth_track.h"
 #include "visavis/head_pose_t.hpp"
 #include "visavis/recogniser_timing_t.hpp"
 
@@ -26,10 +27,12 @@ class PoseSummary {
   std::int64_t num_poses() const { return num_poses_; }
 
  private:
-  void AddError(const head_pose_t& pose, const head_pose_t& truth);
+  /// Takes the poses whose truth is known by now (see TruthTrack) into the errors.
+  void AddErrors();
 
   head_pose_t newest_{};
-  std::deque<head_pose_t> unmatched_poses_, unmatched_truths_;  // bounded
+  std::deque<head_pose_t> poses_;   // whose truth may still come; bounded
+  std::deque<TruthSample> truths_;  // bounded
   std::deque<double> latencies_ms_;
   std::int64_t num_poses_{0}, poses_since_{0};
   double sum_squared_mm_{0}, sum_squared_deg_{0};

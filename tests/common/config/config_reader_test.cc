@@ -60,6 +60,35 @@ TEST(ConfigReaderTest, AMissingKeyKeepsItsDefault) {
   EXPECT_EQ(config.count, 3);
 }
 
+struct Listed {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("parts", &parts);
+  }
+  void ValidateOrThrow() const {}
+  std::vector<Inner> parts;
+};
+
+TEST(ConfigReaderTest, AListOfMappingsIsReadInOrderEachWithItsDefaults) {
+  const auto config = LoadConfig<Listed>(WriteFile("parts:\n- {min_mm: 1}\n- {max_mm: 2}\n"), {});
+  ASSERT_EQ(config.parts.size(), 2u);
+  EXPECT_EQ(config.parts[0].min_mm, 1);
+  EXPECT_EQ(config.parts[0].max_mm, 200);
+  EXPECT_EQ(config.parts[1].max_mm, 2);
+  EXPECT_EQ(YAML::Load(DumpConfig(config))["parts"][1]["max_mm"].as<double>(), 2);
+}
+
+TEST(ConfigReaderTest, AWrongMemberOfAListIsNamedByItsPlace) {
+  EXPECT_THAT([] { LoadConfig<Listed>(WriteFile("\nparts: [{}, {min_mm: 900}]\n")); },
+              ThrowsConfigError(HasSubstr("config_reader_test.yaml:2: parts.1.min_mm: 900: must")));
+  EXPECT_THAT([] { LoadConfig<Listed>("", {"parts=[{min: 3}]"}); },
+              ThrowsConfigError(HasSubstr("--set parts=[{min: 3}]: parts.0.min: 3: unknown key")));
+  EXPECT_THAT([] { LoadConfig<Listed>(WriteFile("parts: [3]\n")); },
+              ThrowsConfigError(HasSubstr("parts.0: 3: must be a mapping")));
+  EXPECT_THAT([] { LoadConfig<Listed>(WriteFile("parts: {min_mm: 3}\n")); },
+              ThrowsConfigError(HasSubstr("must be a list of mappings")));
+}
+
 TEST(ConfigReaderTest, AnEmptyFileGivesTheDefaults) {
   EXPECT_EQ(LoadConfig<Config>(WriteFile("")).mode, "exact");
 }

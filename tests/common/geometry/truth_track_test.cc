@@ -69,13 +69,30 @@ TEST(TruthTrackTest, AHeadThatComesBackJumpsAndOneThatLeavesDoesNot) {
 }
 
 TEST(TruthTrackTest, NothingIsInterpolatedAcrossAJumpOrToAHeadThatIsAway) {
-  const TruthTrack track({Sample(0, 0), Sample(10, 0.1), {20, {}, {}}, {30, {}, {}}},
-                         {5, 15, 25, 6, 16, 26});
+  const TruthTrack track({Sample(0, 0), Sample(10'000, 0.1), {20'000, {}, {}}, {30'000, {}, {}}},
+                         {5000, 15'000, 25'000, 6000, 16'000, 26'000});
   ASSERT_FALSE(track.is_synchronous());
-  EXPECT_FALSE(track.At(5));
-  EXPECT_FALSE(track.At(15));
-  ASSERT_TRUE(track.At(25));
-  EXPECT_FALSE(track.At(25)->X_CM);
+  EXPECT_FALSE(track.At(5000));
+  EXPECT_FALSE(track.At(15'000));
+  ASSERT_TRUE(track.At(25'000));
+  EXPECT_FALSE(track.At(25'000)->X_CM);
+}
+
+TEST(TruthTrackTest, AFrameWithinAMillisecondOfASampleAtAJumpIsThatSamplesExposure) {
+  const TruthTrack track({Sample(0, 0), Sample(10'000, 0.1), {20'000, {}, {}}, {30'000, {}, {}}},
+                         {1, 9001, 10'999, 19'001});
+  ASSERT_FALSE(track.is_synchronous());
+  ASSERT_TRUE(track.At(1000));
+  EXPECT_EQ(track.At(1000)->X_CM->translation().x(), 0);
+  EXPECT_FALSE(track.At(1001));
+  EXPECT_FALSE(track.At(8999));
+  ASSERT_TRUE(track.At(9000));
+  EXPECT_EQ(track.At(9000)->X_CM->translation().x(), 0.1);
+  ASSERT_TRUE(track.At(10'999));
+  EXPECT_EQ(track.At(10'999)->X_CM->translation().x(), 0.1);
+  ASSERT_TRUE(track.At(19'001));
+  EXPECT_FALSE(track.At(19'001)->X_CM);
+  EXPECT_THAT(track.jump_utimes_us(), ElementsAre(9000));
 }
 
 TEST(TruthTrackTest, WithoutTruthNothingIsKnown) {

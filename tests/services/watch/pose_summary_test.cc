@@ -29,6 +29,22 @@ TEST(PoseSummaryTest, ErrorIsTheRmsOverPosesWithTruthWhicheverCameFirst) {
   EXPECT_THAT(summary.Line(1.0), HasSubstr("     3.5"));  // sqrt((9 + 16) / 2)
 }
 
+TEST(PoseSummaryTest, PosesOfCamerasWithClocksOfTheirOwnMeetTruthBetweenItsSamples) {
+  PoseSummary summary;
+  for (int i = 0; i <= 30; ++i) summary.AddTruth(Pose(33'333 * i, 0.001 * i));
+  // Their times are 0.1 ms late: by that time the head has moved on by 3 um.
+  for (int i = 0; i < 30; ++i) summary.AddPose(Pose(33'333 * i + 100, 0.001 * i + 0.006));
+  EXPECT_THAT(summary.Line(1.0), HasSubstr("     6.0"));
+}
+
+TEST(PoseSummaryTest, APoseWaitsForTheTruthOfTheNextSecond) {
+  PoseSummary summary;
+  summary.AddPose(Pose(1, 0.002));
+  EXPECT_THAT(summary.Line(1.0), Not(HasSubstr("     2.0")));
+  summary.AddTruth(Pose(1, 0.000));
+  EXPECT_THAT(summary.Line(1.0), HasSubstr("     2.0"));
+}
+
 TEST(PoseSummaryTest, ALineFitsEightyColumnsWhateverTheNumbers) {
   PoseSummary summary;
   summary.AddPose(Pose(1, -1.999));
