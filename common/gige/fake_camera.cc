@@ -19,6 +19,8 @@
 namespace visavis {
 namespace {
 
+constexpr std::uint32_t kPacketSizeRegister = 0x0d04;  // GigE Vision: stream channel 0
+constexpr double kLostOfLarge = 0.9;                   // small parts of a frame come through
 constexpr int kGvcpPort = 3956;
 
 // Aravis's camera says that it runs even where it got no socket.
@@ -164,11 +166,16 @@ class FakeCamera::Impl {
       --to_drop_;
       lost = true;
     }
+    guint32 packet_bytes = 0;
+    arv_fake_camera_read_register(fake, kPacketSizeRegister, &packet_bytes);
+    double share = options_.lost_packet_share;
+    if (options_.largest_packet_bytes > 0 &&
+        (packet_bytes & 0xffff) > static_cast<guint32>(options_.largest_packet_bytes))
+      share = kLostOfLarge;
     // Aravis looks at this for each packet, in this very thread.
     lock.lock();
     if (leaving_) return;
-    g_object_set(camera_.get(), "gvsp-lost-ratio", lost ? 1.0 : options_.lost_packet_share,
-                 nullptr);
+    g_object_set(camera_.get(), "gvsp-lost-ratio", lost ? 1.0 : share, nullptr);
   }
 
   guint64 CameraTimeNs(std::int64_t utime_us) const {

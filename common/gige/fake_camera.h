@@ -41,6 +41,8 @@ class FakeCamera {
     double clock_start_s{0}, drift_ppm{0};
     /// Share of the packets that the link loses. The camera cannot send them again.
     double lost_packet_share{0};
+    /// Of larger packets [bytes] the link loses nearly all; 0: it carries any.
+    int largest_packet_bytes{0};
     /// GenICam description of features beyond Aravis's own, whose registers are plain memory; the
     /// name of a file. Empty: Aravis's.
     std::string genicam_file{};

@@ -23,9 +23,9 @@ struct BoardSpec {
   void ValidateOrThrow() const;
 
   std::string kind{"charuco"};
-  int columns{11}, rows{8};  ///< squares, outer ones included
-  double square_mm{24};
-  double marker_mm{18};           ///< charuco: side of a marker, its black border included
+  int columns{16}, rows{11};  ///< squares, outer ones included
+  double square_mm{17};
+  double marker_mm{12.75};        ///< charuco: side of a marker, its black border included
   std::string dictionary{"4x4"};  ///< charuco: bits of a marker; of 250 markers
 };
 

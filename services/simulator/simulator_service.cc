@@ -54,7 +54,8 @@ ServiceTraits SimulatorService::Traits() {
       {"--subject", "scene.subject", "who stands before the cameras, adult_a ..."},
       {"--seconds", "seconds", "how long; 0: until stopped"},
       {"--seed", "seed", "of all that is random"},
-      {"--export-mesh", "export_mesh", "FILE: writes the subject's head there as OBJ; ends then, unless --seconds"}};
+      {"--export-mesh", "export_mesh",
+       "FILE: writes the subject's head there as OBJ; ends then, unless --seconds"}};
   return traits;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/core/clock.h"
+#include "common/gige/interface_mtu.h"
 #include "services/stereo_capture/aravis_error.h"
 #include "services/stereo_capture/aravis_trigger.h"
 
@@ -15,7 +16,8 @@ namespace {
 constexpr int kSearchMs = 100;        // GigE cameras answer within some milliseconds
 constexpr double kControlS = 5;       // longer than a dead owner's hold: 3 s
 constexpr double kFirstFrameS = 0.5;  // after the start, beside two periods
-constexpr double kRefusedS = 1;       // until a camera that refused is asked again
+constexpr int kLargestPacket = 9000;  // [bytes] that cameras' links carry at most, and at least
+constexpr int kSmallPacket = 1400;
 constexpr double kExposurePollS = 1;  // where the camera chooses its exposure itself
 constexpr std::size_t kMaxTeardowns = 4;
 constexpr double kDistrustS = 0.1;     // longer than frames wait for each other in Aravis
@@ -40,46 +42,24 @@ std::string StatusText(ArvBufferStatus status) {
   }
 }
 
+int LargestPacketOf(ArvCamera* camera) {
+  gint64 min = 0, max = 0;
+  GlibError error;
+  arv_camera_get_integer_bounds(camera, "GevSCPSPacketSize", &min, &max, error.out());
+  return !error && max > kSmallPacket ? static_cast<int>(std::min<gint64>(max, kLargestPacket))
+                                      : kLargestPacket;
+}
+
 }  // namespace
 
 AravisCamera::AravisCamera(Side side, SideConfig device, CameraConfig config,
                            std::optional<PictureSize> rig_size, FrameQueue* queue)
-    : side_(side),
-      device_(std::move(device)),
-      config_(std::move(config)),
-      rig_size_(rig_size),
-      queue_(*queue),
-      thread_([this] { Run(); }) {}
-
-AravisCamera::~AravisCamera() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stop_ = true;
-  }
-  stopping_.notify_all();
-  thread_.join();
+    : CameraThread(side, std::move(device), std::move(config), rig_size, queue) {
+  Begin();
 }
 
-CameraReport AravisCamera::Report() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return report_;
-}
-
-void AravisCamera::Run() {
-  while (!stop_) {
-    double wait_s = kRefusedS;
-    try {
-      wait_s = RunOnce();
-    } catch (const CameraRefusal& e) {
-      Fail(State::kRefused, e.what());
-    } catch (const std::exception& e) {
-      Fail(State::kOpening, e.what());
-      wait_s = 0.1;
-    }
-    Wait(wait_s);
-  }
-  teardowns_.clear();  // waits for them: 5 s for a camera that is gone
-}
+// Leaving waits for the teardowns: 5 s for a camera that is gone.
+AravisCamera::~AravisCamera() { End(); }
 
 double AravisCamera::RunOnce() {
   const auto found = Find();
@@ -89,15 +69,16 @@ double AravisCamera::RunOnce() {
   auto connection = std::make_unique<AravisConnection>(*found);
   try {
     if (TakeControl(connection.get(), found->text())) {
+      const CameraConfig config = ConfigFor(*found, connection->camera());
       const CameraFormat format =
-          ApplySettings(connection->camera(), config_, device_.features, rig_size_);
-      connection->Start(config_, format.payload_bytes);
+          ApplySettings(connection->camera(), config, device_.features, rig_size_);
+      connection->Start(config, format.payload_bytes);
       last_address_ = found->device.address;
       {
         const std::lock_guard<std::mutex> lock(mutex_);
         report_.what = found->text() + ", " + format.text;
       }
-      Stream(connection.get(), format);
+      if (!Stream(connection.get(), format)) small_packets_ = !small_packets_;
     }
   } catch (...) {
     TearDown(std::move(connection));
@@ -107,10 +88,20 @@ double AravisCamera::RunOnce() {
   return 0;
 }
 
+CameraConfig AravisCamera::ConfigFor(const FoundCamera& found, ArvCamera* camera) const {
+  CameraConfig config = config_;
+  if (config.packet_size_bytes != 0 || !found.usb_id.empty()) return config;
+  config.packet_size_bytes =
+      small_packets_ ? kSmallPacket
+                     : std::min({kLargestPacket, InterfaceMtu(found.device.interface_address),
+                                 LargestPacketOf(camera)});
+  return config;
+}
+
 std::optional<FoundCamera> AravisCamera::Find() {
   const auto found = FindCameras(device_.device, kSearchMs, last_address_);
   if (found.size() == 1) return found[0];
-  const std::string key_value = std::string(SideName(side_)) + ".device: " + device_.device;
+  const std::string key_value = DeviceKeyValue();
   if (found.size() > 1) {
     throw CameraRefusal(key_value + ": " + std::to_string(found.size()) +
                         " cameras answer to it (" + found[0].text() + ", " + found[1].text() +
@@ -122,7 +113,7 @@ std::optional<FoundCamera> AravisCamera::Find() {
 
 bool AravisCamera::TakeControl(AravisConnection* connection, const std::string& camera) {
   const double end_s = MonotonicSeconds() + kControlS;
-  while (!stop_) {
+  while (!stopping()) {
     if (connection->TakeControl()) return true;
     Fail(State::kOpening, camera + ": another program holds it; trying again");
     if (MonotonicSeconds() > end_s) return false;
@@ -131,26 +122,30 @@ bool AravisCamera::TakeControl(AravisConnection* connection, const std::string& 
   return false;
 }
 
-void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
+bool AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
   ++session_;
   AravisTrigger trigger(connection->camera(), last_address_, config_);
   newest_ns_ = num_stale_ = num_wrong_sizes_ = 0;
   distrust_until_s_ = 0;
   bool first = true, streaming = false;
-  double last_s = MonotonicSeconds(), last_poll_s = last_s;
+  double last_s = MonotonicSeconds(), last_poll_s = last_s, first_s = last_s;
+  const double first_patience_s = kFirstFrameS + 2 * config_.period_s();
   const bool polls = config_.exposure == "auto" || config_.gain == "auto";
   const std::int64_t missing_before = Report().missing_packets;
   const std::int64_t resent_before = Report().resent_packets;
   // A camera that is gone is not told to stop, since each word to it takes seconds; one that is not
   // stops when we leave.
   connection->set_farewell(false);
-  while (!stop_) {
+  while (!stopping()) {
     const auto buffer = connection->Pop(trigger.Pull());
     const double now_s = MonotonicSeconds();
     if (buffer) {
       last_s = now_s;
       // The first frame's arrival says little of the link, and is often late.
-      if (std::exchange(first, false)) continue;
+      if (std::exchange(first, false)) {
+        first_s = now_s;
+        continue;
+      }
       const bool good = Take(*connection, buffer, format);
       const std::lock_guard<std::mutex> lock(mutex_);
       report_.missing_packets = missing_before + connection->Count("n_missing_packets");
@@ -163,9 +158,14 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
     }
     if (connection->control_lost()) {
       Fail(State::kOpening, "the camera does not answer any more");
-      return;
+      return streaming;
     }
-    const double patience_s = first ? kFirstFrameS + 2 * config_.period_s() : config_.stall_s();
+    if (!first && !streaming && !small_packets_ && config_.packet_size_bytes == 0 &&
+        now_s - first_s > first_patience_s) {
+      Fail(State::kOpening, "no frame is whole; connecting anew with smaller packets");
+      return false;
+    }
+    const double patience_s = first ? first_patience_s : config_.stall_s();
     if (now_s - last_s > patience_s) {
       if (WaitsForTrigger(*connection)) {
         last_s = now_s;
@@ -175,7 +175,7 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
       Fail(State::kOpening, "no frame for " + std::to_string(silent_ms) + " ms; connecting anew");
       const std::lock_guard<std::mutex> lock(mutex_);
       ++report_.stalls;
-      return;
+      return streaming;
     }
     if (polls && streaming && now_s > last_poll_s + kExposurePollS) {
       last_poll_s = now_s;
@@ -183,6 +183,7 @@ void AravisCamera::Stream(AravisConnection* connection, CameraFormat format) {
     }
   }
   connection->set_farewell(MonotonicSeconds() - last_s < 2 * config_.period_s());
+  return true;
 }
 
 bool AravisCamera::WaitsForTrigger(const AravisConnection& connection) {
@@ -272,19 +273,6 @@ void AravisCamera::TearDown(std::unique_ptr<AravisConnection> connection) {
   if (teardowns_.size() >= kMaxTeardowns) teardowns_.pop_front();  // waits for it
   teardowns_.push_back(
       std::async(std::launch::async, [c = std::move(connection)]() mutable { c.reset(); }));
-}
-
-void AravisCamera::Fail(State state, const std::string& text) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  report_.state = state;
-  report_.text = std::string(SideName(side_)) + " camera: " + text;
-  report_.last_error = report_.text;
-  ++report_.attempts;
-}
-
-void AravisCamera::Wait(double seconds) {
-  std::unique_lock<std::mutex> lock(mutex_);
-  stopping_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return stop_.load(); });
 }
 
 }  // namespace visavis

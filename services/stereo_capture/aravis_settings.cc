@@ -189,11 +189,7 @@ class Setup {
     GlibError error;
     const std::string key_value = KeyValue("camera.packet_size_bytes", config_.packet_size_bytes);
     arv_camera_gv_set_packet_size_adjustment(camera_, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
-    if (config_.packet_size_bytes > 0) {
-      arv_camera_gv_set_packet_size(camera_, config_.packet_size_bytes, error.out());
-    } else {
-      arv_camera_gv_auto_packet_size(camera_, error.out());
-    }
+    arv_camera_gv_set_packet_size(camera_, config_.packet_size_bytes, error.out());
     ThrowOnError(error, key_value);
     if (config_.packet_delay_us > 0) {
       arv_camera_gv_set_packet_delay(camera_, std::llround(1e3 * config_.packet_delay_us),

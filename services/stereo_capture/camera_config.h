@@ -79,7 +79,7 @@ struct CameraConfig {
   bool ptp{false};
   std::string timestamp_at{"start"};  ///< what of the exposure the camera's time stamp means
   double readout_ms{0};               ///< exposure's end to the first packet, known to be constant
-  int packet_size_bytes{1400};        ///< 0: negotiated
+  int packet_size_bytes{0};           ///< 0: what the interface takes, see AravisCamera
   double packet_delay_us{0};
   bool packet_resend{true};
   bool packet_socket{false};

@@ -1,19 +1,16 @@
 #include "services/stereo_capture/uvc_camera.h"
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <opencv2/videoio.hpp>
 #include <utility>
 
 #include "common/core/clock.h"
-#include "services/stereo_capture/aravis_error.h"
+#include "services/stereo_capture/camera_error.h"
 #include "services/stereo_capture/picture_format.h"
 
 namespace visavis {
 namespace {
-
-using State = CameraReport::State;
 
 // V4L2's way to say who chooses the exposure, and its unit.
 constexpr double kV4lManualExposure = 1, kV4lAutoExposure = 3, kV4lExposureUnitMs = 0.1;
@@ -54,58 +51,14 @@ void SetUp(const CameraConfig& config, cv::VideoCapture* video) {
 
 UvcCamera::UvcCamera(Side side, SideConfig device, CameraConfig config,
                      std::optional<PictureSize> rig_size, FrameQueue* queue)
-    : side_(side),
-      device_(std::move(device)),
-      config_(std::move(config)),
-      rig_size_(rig_size),
-      queue_(*queue),
-      thread_([this] { Run(); }) {}
-
-UvcCamera::~UvcCamera() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stop_ = true;
-  }
-  stopping_.notify_all();
-  thread_.join();
+    : CameraThread(side, std::move(device), std::move(config), rig_size, queue) {
+  Begin();
 }
 
-CameraReport UvcCamera::Report() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return report_;
-}
-
-bool UvcCamera::stopping() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return stop_;
-}
-
-void UvcCamera::Fail(State state, const std::string& text) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  report_.state = state;
-  report_.text = std::string(SideName(side_)) + " camera: " + text;
-  report_.last_error = report_.text;
-  ++report_.attempts;
-}
-
-void UvcCamera::Run() {
-  while (!stopping()) {
-    double wait_s = 0.1;
-    try {
-      wait_s = RunOnce();
-    } catch (const CameraRefusal& e) {
-      Fail(State::kRefused, e.what());
-      wait_s = 1;
-    } catch (const std::exception& e) {  // OpenCV's among them
-      Fail(State::kOpening, e.what());
-    }
-    std::unique_lock<std::mutex> lock(mutex_);
-    stopping_.wait_for(lock, std::chrono::duration<double>(wait_s), [this] { return stop_; });
-  }
-}
+UvcCamera::~UvcCamera() { End(); }
 
 double UvcCamera::RunOnce() {
-  const std::string key_value = std::string(SideName(side_)) + ".device: " + device_.device;
+  const std::string key_value = DeviceKeyValue();
   if (!std::filesystem::exists(device_.device)) {
     Fail(State::kSearching, key_value + ": no such device file; waiting for it");
     return 0.1;

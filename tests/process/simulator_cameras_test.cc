@@ -56,10 +56,10 @@ class SimulatorCamerasTest : public ::testing::Test {
     simulator_ = Start("simulator", flags);
     ASSERT_TRUE(simulator_->WaitForOutput("running", seconds(60))) << simulator_->Err();
     recogniser_ = Start("recogniser", {});
-    capture_process_ = Start(
-        "stereo-capture", {"--left", "127.0.0.1", "--right", "127.0.0.2", "--rig",
-                           folder_ / "rig.yaml", "--set", "camera.packet_size_bytes=9000", "--set",
-                           "camera.frame_rate_hz=15", "--set", "camera.stall_ms=800"});
+    capture_process_ =
+        Start("stereo-capture",
+              {"--left", "127.0.0.1", "--right", "127.0.0.2", "--rig", folder_ / "rig.yaml",
+               "--set", "camera.frame_rate_hz=15", "--set", "camera.stall_ms=800"});
   }
 
   bool Receive(double within_s, const std::function<bool()>& done) {

@@ -115,8 +115,7 @@ HeadLearner::Learned HeadLearner::Step() {
   begun_ = -1;
   learned_views_ = num_views();
   sides_.Unsettle();
-  for (std::size_t i = 0; i < sides_.poses().size(); ++i)
-    sides_.SetPose(i, work_->bundle->pose(i));
+  for (std::size_t i = 0; i < sides_.poses().size(); ++i) sides_.SetPose(i, work_->bundle->pose(i));
   Learned learned = std::move(work_->learned);
   if (learned_views_ >= most_views_) work_.reset();
   return learned;

@@ -54,8 +54,8 @@ class HeadLearner {
   const int most_views_;
   NoBackground no_background_;
   Background* const background_;
-  NewSides sides_;                   ///< of the views
-  std::vector<HeadView> new_views_;  ///< not bundled yet
+  NewSides sides_;                    ///< of the views
+  std::vector<HeadView> new_views_;   ///< not bundled yet
   std::array<ColorModel, 2> colors_;  ///< of the last view
   int frames_{0}, learned_views_{0}, begun_{-1};
   std::shared_ptr<Work> work_;

@@ -6,7 +6,8 @@
 
 namespace visavis {
 
-/// The sides that a head was seen from: one pose for each direction, taken once a track has settled.
+/// The sides that a head was seen from: one pose for each direction, taken once a track has
+/// settled.
 class NewSides {
  public:
   /// The track was lost, or its frame has moved: what follows must settle anew.

@@ -56,7 +56,7 @@ TEST(BoardPdfTest, TheFileIsWholeAndItsTableLeadsToItsObjects) {
   EXPECT_THAT(pdf, StartsWith("%PDF-1.4\n"));
   EXPECT_THAT(pdf, EndsWith("%%EOF\n"));
   EXPECT_THAT(pdf, HasSubstr("/MediaBox [0 0 841.8898 595.2756]"));
-  EXPECT_THAT(pdf, HasSubstr("Visavis charuco 11 x 8, squares 24 mm, markers 18 mm"));
+  EXPECT_THAT(pdf, HasSubstr("Visavis charuco 16 x 11, squares 17 mm, markers 12.75 mm"));
   const std::size_t table = std::stoul(pdf.substr(pdf.find("startxref\n") + 10));
   EXPECT_EQ(pdf.substr(table, 4), "xref");
   std::istringstream entries(pdf.substr(pdf.find(" n \n", table) - 16));
@@ -73,10 +73,10 @@ TEST(BoardPdfTest, TheFileIsWholeAndItsTableLeadsToItsObjects) {
 
 TEST(BoardPdfTest, ABoardThatDoesNotFitIsRefusedWithBothSizes) {
   BoardSpec spec;
-  spec.square_mm = 26;
+  spec.square_mm = 18.5;
   EXPECT_THAT([&] { BoardPdf(Board(spec), ParsePaper("a4")); },
               ThrowsMessage<std::invalid_argument>(
-                  HasSubstr("board of 286 x 208 mm: must fit on 297 x 210 mm of paper")));
+                  HasSubstr("board of 296 x 203.5 mm: must fit on 297 x 210 mm of paper")));
   EXPECT_NE(BoardPdf(Board(spec), ParsePaper("a3")), "");
 }
 

@@ -15,6 +15,8 @@ BoardSpec Spec(const std::string& kind, int columns, int rows) {
   spec.kind = kind;
   spec.columns = columns;
   spec.rows = rows;
+  spec.square_mm = 24;
+  spec.marker_mm = 18;
   return spec;
 }
 
@@ -86,7 +88,7 @@ TEST(BoardTest, BoardsThatCannotServeAreRefused) {
   ExpectRefusal([] { Board(Spec("charuco", 40, 30)); }, "columns", "40", "at most 500");
   BoardSpec spec;
   spec.marker_mm = spec.square_mm;
-  ExpectRefusal([&] { Board{spec}; }, "marker_mm", "24", "0.3 to 0.9 of square_mm");
+  ExpectRefusal([&] { Board{spec}; }, "marker_mm", "17", "0.3 to 0.9 of square_mm");
 }
 
 }  // namespace

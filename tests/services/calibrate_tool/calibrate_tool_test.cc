@@ -156,7 +156,8 @@ TEST_F(CalibrateToolTest, BadInputGetsOneLineAndExitCode2) {
   EXPECT_THAT(Refusal({"board", *folder_ / "a.pdf", "--square-mm", "50"}),
               HasSubstr("must fit on 297 x 210 mm"));
   EXPECT_THAT(Refusal({"board", "/nonexistent/a.pdf"}), HasSubstr("/nonexistent/a.pdf: must lie"));
-  EXPECT_THAT(Refusal({"board", *folder_ / "a.pdf", "--kind", "chessboard", "--rows", "9"}),
+  EXPECT_THAT(Refusal({"board", *folder_ / "a.pdf", "--kind", "chessboard", "--columns", "11",
+                       "--rows", "9"}),
               HasSubstr("rows: 9: must be even where columns is odd"));
   EXPECT_THAT(Refusal(with(stereo, {"--board", "/none.yaml"})), HasSubstr("/none.yaml: cannot be"));
   std::ofstream(*folder_ / "bad.yaml") << "columns: 9\nrows: two\n";

@@ -226,6 +226,30 @@ TEST_F(AravisCameraTest, ALossyLinkWithoutResendIsToldAndNeverPublished) {
   EXPECT_THAT(camera_->Report().last_error, HasSubstr("left camera: frame"));
 }
 
+TEST_F(AravisCameraTest, PacketsAreAsLargeAsTheInterfaceTakesIfTheSizeIsLeftOpen) {
+  config_.packet_size_bytes = 0;
+  PowerOn(WriteNumber);
+  Open();
+  ASSERT_TRUE(WaitForFrames(3));
+  EXPECT_THAT(camera_->Report().what, HasSubstr("packets of 9000 bytes"));
+}
+
+TEST_F(AravisCameraTest, ALinkThatLosesLargePacketsGetsSmallOnesAndKeepsThem) {
+  config_.packet_size_bytes = 0;
+  options_.largest_packet_bytes = 1500;
+  FakeCamera& fake = PowerOn(WriteNumber);
+  Open();
+  ASSERT_TRUE(WaitForFrames(3));
+  EXPECT_THAT(camera_->Report().what, HasSubstr("packets of 1400 bytes"));
+  fake.Die();
+  ASSERT_TRUE(WaitFor([&] { return camera_->Report().state != State::kStreaming; }));
+  fake.Return();
+  while (queue_.Pop()) continue;
+  ASSERT_TRUE(WaitForFrames(3));
+  EXPECT_THAT(camera_->Report().what, HasSubstr("packets of 1400 bytes"));
+  EXPECT_EQ(camera_->Report().connects, 2);
+}
+
 // 160 x 120 grey in packets of 1008 bytes, 36 of them headers: 19 whole ones and 732 bytes.
 constexpr int kPackets = 20;
 constexpr std::size_t kPacketBytes = 972, kLastBytes = 160 * 120 - 19 * kPacketBytes;
