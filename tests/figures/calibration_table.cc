@@ -101,6 +101,7 @@ int Main(int argc, char* argv[]) {
         Case{"the same, arm off by 0.2 mm, 0.02 deg", 16, 11, 42, 60, 0.2, 0.2, 0.02},
         Case{"the same", 16, 11, 42, 20, 0.2, 0, 0}, Case{"the same", 16, 11, 42, 60, 0.5, 0, 0},
         Case{"16 x 11, 25 mm (A3)", 16, 11, 25, 60, 0.2, 0, 0},
+        Case{"16 x 11, 17 mm (A4)", 16, 11, 17, 60, 0.2, 0, 0},
         Case{"11 x 8, 60 mm", 11, 8, 60, 60, 0.2, 0, 0}})
     Run(c, num_trials);
   return 0;

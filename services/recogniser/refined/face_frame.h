@@ -27,25 +27,35 @@ class FaceFrame {
   struct Looks {
     std::vector<float> value;
     std::vector<unsigned char> known;  ///< by vertex of the sphere
+
+    bool Knows(const Icosphere::Place& place) const {
+      const auto& [a, b, c] = place.corners;
+      return known[static_cast<std::size_t>(a)] && known[static_cast<std::size_t>(b)] &&
+             known[static_cast<std::size_t>(c)];
+    }
   };
   struct Asked {
     const std::vector<Eigen::Vector3f>& points;
     const std::vector<float>& value;  ///< of one band, at the points
-    const HeadSurface& surface;
-    const Looks& generic;
-    Looks looks;
+    const std::vector<float>& radii;  ///< [m] of its surface, by vertex
+    const Looks &generic, &looks;
     double contrast;  ///< rms of the face's brightness
+    /// By point, where its place and its mirrored one were found last: they hardly move.
+    std::vector<std::array<std::size_t, 2>> triangles;
   };
 
-  Looks LooksOf(const std::vector<Eigen::Vector3f>& points, const std::vector<float>& value) const;
-  bool At(const Looks& looks, const Eigen::Vector3f& direction, float* value) const;
-  RigidTransform Refine(const Asked& asked, const RigidTransform& X_MN,
+  std::array<Looks, kNumBands> LooksOf(
+      const std::vector<Eigen::Vector3f>& points,
+      const std::array<std::vector<float>, kNumBands>& value) const;
+  /// [m] of @p surface, by vertex of the sphere.
+  std::vector<float> RadiiOf(const HeadSurface& surface) const;
+  RigidTransform Refine(Asked* asked, const RigidTransform& X_MN,
                         const Eigen::Vector3d& p_NM) const;
   /// What speaks against X_MN, each in its standard deviation.
-  void Misfits(const Asked& asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const;
+  void Misfits(Asked* asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const;
 
-  const HeadSurface generic_;
   const Icosphere sphere_;
+  const std::vector<float> generic_radii_;
   std::array<Looks, kNumBands> generic_looks_;
 };
 

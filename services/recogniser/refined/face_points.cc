@@ -11,6 +11,7 @@ using Eigen::Vector3f;
 // The drawing of a face seen from the front: 1 mm a cell, the origin of M in the middle column.
 constexpr int kColumns = 161, kRows = 201, kMiddle = 80, kTop = 50;
 
+constexpr float kOnSurface_m = 2e-7f;
 constexpr float kHighest_m = -0.037f, kLowest_m = 0.109f;  ///< rows of points, y in M
 
 class Drawing {
@@ -40,19 +41,21 @@ class Drawing {
     }
     for (float& w : weights) w /= sum;
     const float* weight = weights.data() + radius;  // weight[k] of k = -radius ... radius
+    // Sums of whole rows, cell by cell: the order of a cell's own sum stays.
     Drawing rows, both;
+    std::vector<float> padded(static_cast<std::size_t>(kColumns + 2 * radius));
     for (int j = 0; j < kRows; ++j) {
-      for (int i = 0; i < kColumns; ++i) {
-        float value = 0;
-        for (int k = -radius; k <= radius; ++k) value += weight[k] * Cell(i + k, j);
-        rows.cells_[Index(i, j)] = value;
+      for (int i = -radius; i < kColumns + radius; ++i) {
+        padded[static_cast<std::size_t>(i + radius)] = Cell(i, j);
+      }
+      for (int k = -radius; k <= radius; ++k) {
+        AddRow(weight[k], padded.data() + radius + k, &rows.cells_[Index(0, j)]);
       }
     }
     for (int j = 0; j < kRows; ++j) {
-      for (int i = 0; i < kColumns; ++i) {
-        float value = 0;
-        for (int k = -radius; k <= radius; ++k) value += weight[k] * rows.Cell(i, j + k);
-        both.cells_[Index(i, j)] = value;
+      for (int k = -radius; k <= radius; ++k) {
+        const int from = std::clamp(j + k, 0, kRows - 1);
+        AddRow(weight[k], &rows.cells_[Index(0, from)], &both.cells_[Index(0, j)]);
       }
     }
     return both;
@@ -64,6 +67,9 @@ class Drawing {
   }
 
  private:
+  static void AddRow(float weight, const float* from, float* to) {
+    for (int i = 0; i < kColumns; ++i) to[i] += weight * from[i];
+  }
   static std::size_t Index(int i, int j) {
     return static_cast<std::size_t>(j) * kColumns + static_cast<std::size_t>(i);
   }
@@ -102,13 +108,27 @@ Drawing GenericFace(const HeadShape& shape) {
 
 /// The surface at height @p y, seen from the axis x = z = 0 at @p azimuth (0: straight ahead).
 Vector3f PointAt(const HeadSurface& surface, float y, float azimuth) {
-  float inside = 0, outside = 0.2f;
+  const float sine = std::sin(azimuth), cosine = std::cos(azimuth);
   Vector3f p;
-  for (int k = 0; k < 22; ++k) {
-    const float rho = 0.5f * (inside + outside);
-    p = {rho * std::sin(azimuth), y, -rho * std::cos(azimuth)};
+  const auto beyond = [&](float rho) {
+    p = {rho * sine, y, -rho * cosine};
     const float r = p.norm();
-    (r < surface.Radius(p / r) ? inside : outside) = rho;
+    return r - surface.Radius(p / r);
+  };
+  // Regula falsi; an end that stays twice counts half (the Illinois rule).
+  float inside = 1e-3f, outside = 0.2f;
+  float below = beyond(inside), above = beyond(outside);
+  if (below >= 0) return (beyond(inside), p);
+  int last = 0;
+  for (int k = 0; k < 22; ++k) {
+    const float rho = (inside * above - outside * below) / (above - below);
+    const float off = beyond(rho);
+    if (std::abs(off) < kOnSurface_m) break;
+    const int side = off < 0 ? -1 : 1;
+    (off < 0 ? inside : outside) = rho;
+    (off < 0 ? below : above) = off;
+    if (side == last) (off < 0 ? above : below) *= 0.5f;
+    last = side;
   }
   return p;
 }

@@ -98,7 +98,7 @@ void HeadBundle::LearnTexture() {
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye) {
         if (!view_[eye].seen()) continue;
-        texture.Learn(band, model_->prepared.refiner.Sample(view_, eye, view.X_CM, band, texture));
+        texture.Learn(band, model_->faced.refiner.Sample(view_, eye, view.X_CM, band, texture));
       }
     }
   }
@@ -106,7 +106,7 @@ void HeadBundle::LearnTexture() {
 
 HeadGeometry HeadBundle::Enrolled() {
   LearnTexture();
-  HeadGeometry head = model_->prepared.head;
+  HeadGeometry head = model_->faced.head;
   head.face = model_->texture.Learned();
   return head;
 }
@@ -116,7 +116,7 @@ HeadBundle::Agreement HeadBundle::RefinePoses() {
   for (HeadView& view : views_) {
     Look(view);
     const Refined refined =
-        model_->prepared.refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
+        model_->faced.refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
     if (refined.X_CM.matrix().allFinite()) view.X_CM = refined.X_CM;
     const double share = 1 / static_cast<double>(views_.size());
     sum.texture_ncc += share * refined.texture_ncc;
@@ -156,7 +156,7 @@ void HeadBundle::AddOutline(const HeadView& view) {
   for (std::size_t eye = 0; eye < 2; ++eye) {
     if (!view_[eye].seen()) continue;
     for (const OutlineMeasurement& m :
-         model_->prepared.refiner.Outline(view_, eye, view.X_CM, kOutlineReach_px)) {
+         model_->faced.refiner.Outline(view_, eye, view.X_CM, kOutlineReach_px)) {
       const Eigen::Vector3f d = m.p_M.normalized();
       shape_.Add(d, static_cast<double>(m.slope.dot(R_CM * d)), static_cast<double>(m.distance),
                  kOutlineIndependence * static_cast<double>(m.weight));
@@ -185,7 +185,7 @@ void HeadBundle::RebuildModel() {
 void HeadBundle::MoveFrame(const RigidTransform& X_MN) {
   const RigidTransform X_NM = X_MN.inverse();
   for (HeadView& view : views_) view.X_CM = view.X_CM * X_NM;
-  const HeadSurface& surface_N = model_->prepared.head.surface;
+  const HeadSurface& surface_N = model_->faced.head.surface;
   const std::vector<Eigen::Vector3f>& directions = shape_.sphere().vertices();
   const Eigen::Isometry3f X(X_NM.matrix().cast<float>());
   for (std::size_t i = 0; i < displaced_.size(); ++i) {

@@ -64,8 +64,8 @@ class HeadBundle {
  private:
   struct Model {
     Model(const RefinerConfig& config, const HeadGeometry& head)
-        : prepared(config, head), texture(prepared.face) {}
-    PreparedHead prepared;
+        : faced(config, head), texture(faced.face) {}
+    FacedHead faced;
     FaceTexture texture;
   };
 

@@ -8,6 +8,7 @@ namespace {
 constexpr int kFirstFrame = 30;  ///< with a track, at which learning begins, if only of one view
 constexpr int kFrames = 15, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
+constexpr int kLongest = 150;                    ///< frames after which one view more will do
 constexpr int kTurns = 2, kRounds = 2;           ///< of the bundle, each turn with a new frame
 
 }  // namespace
@@ -80,7 +81,7 @@ void HeadLearner::Forget() {
   work_.reset();  // what is under way keeps its own
   sides_.Forget();
   new_views_.clear();
-  frames_ = learned_views_ = 0;
+  frames_ = learned_views_ = learned_frame_ = 0;
   begun_ = -1;
 }
 
@@ -94,7 +95,8 @@ void HeadLearner::Add(const StereoFrame& frame, const RigidTransform& X_CM,
 bool HeadLearner::IsDue() const {
   const int views = num_views();
   if (views == 0 || views == learned_views_ || frames_ < kFirstFrame) return false;
-  return views >= most_views_ || views >= kGrowth * learned_views_;
+  return views >= most_views_ || views >= kGrowth * learned_views_ ||
+         frames_ > learned_frame_ + kLongest;
 }
 
 HeadLearner::Learned HeadLearner::Step() {
@@ -114,6 +116,7 @@ HeadLearner::Learned HeadLearner::Step() {
   if (frames_ < begun_ + frames || !background_->IsFinished()) return {};
   begun_ = -1;
   learned_views_ = num_views();
+  learned_frame_ = frames_;
   sides_.Unsettle();
   for (std::size_t i = 0; i < sides_.poses().size(); ++i) sides_.SetPose(i, work_->bundle->pose(i));
   Learned learned = std::move(work_->learned);

@@ -57,7 +57,7 @@ class HeadLearner {
   NewSides sides_;                    ///< of the views
   std::vector<HeadView> new_views_;   ///< not bundled yet
   std::array<ColorModel, 2> colors_;  ///< of the last view
-  int frames_{0}, learned_views_{0}, begun_{-1};
+  int frames_{0}, learned_views_{0}, learned_frame_{0}, begun_{-1};
   std::shared_ptr<Work> work_;
 };
 

@@ -12,10 +12,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Volumes spanned with @p d: all >= 0 where d leads through the triangle a, b, c.
-Vector3f Shares(const Vector3f& a, const Vector3f& b, const Vector3f& c, const Vector3f& d) {
-  return {d.dot(b.cross(c)), d.dot(c.cross(a)), d.dot(a.cross(b))};
-}
+/// A direction this deep in a triangle is in no other, whatever the rounding.
+constexpr float kSurelyInside = 1e-5f;
 
 }  // namespace
 
@@ -30,6 +28,17 @@ Icosphere::Icosphere(int level) {
                         {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                         {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}});
   for (int i = 0; i < level; ++i) Subdivide();
+  for (const auto& triangles : triangles_) planes_.push_back(PlanesOf(triangles));
+}
+
+std::vector<Icosphere::Planes> Icosphere::PlanesOf(const std::vector<Triangle>& triangles) const {
+  std::vector<Planes> planes(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Vector3f &a = vertex(triangles[i][0]), &b = vertex(triangles[i][1]),
+                   &c = vertex(triangles[i][2]);
+    planes[i].normals << b.cross(c).transpose(), c.cross(a).transpose(), a.cross(b).transpose();
+  }
+  return planes;
 }
 
 int Icosphere::LevelOf(std::size_t num_vertices) {
@@ -62,33 +71,47 @@ void Icosphere::Subdivide() {
   triangles_.push_back(std::move(finer));
 }
 
-Icosphere::Place Icosphere::Locate(const Vector3f& direction) const {
-  const Vector3f d = direction.normalized();
-  // Of the candidates that which d lies deepest in: rounding at an edge picks either neighbour.
-  const auto deepest = [&](const std::vector<Triangle>& triangles, std::size_t begin,
-                           std::size_t end) {
-    std::size_t best = begin;
-    float depth = -2;
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = triangles[t];
-      const float least = Shares(vertex(a), vertex(b), vertex(c), d).minCoeff();
-      if (least > depth) {
-        depth = least;
-        best = t;
-      }
+// The triangle that the direction lies deepest in: rounding at an edge picks either neighbour.
+std::size_t Icosphere::Deepest(const std::vector<Planes>& planes, std::size_t begin,
+                               std::size_t end, const Vector3f& direction) const {
+  std::size_t best = begin;
+  float depth = -2;
+  for (std::size_t t = begin; t < end; ++t) {
+    const float least = planes[t].Shares(direction).minCoeff();
+    if (least > depth) {
+      depth = least;
+      best = t;
+      if (depth > kSurelyInside) break;
     }
-    return best;
-  };
-  std::size_t at = deepest(triangles_[0], 0, triangles_[0].size());
-  for (std::size_t level = 1; level < triangles_.size(); ++level) {
-    at = deepest(triangles_[level], 4 * at, 4 * at + 4);
   }
+  return best;
+}
+
+std::size_t Icosphere::Find(const Vector3f& d) const {
+  std::size_t at = Deepest(planes_[0], 0, planes_[0].size(), d);
+  for (std::size_t level = 1; level < triangles_.size(); ++level) {
+    at = Deepest(planes_[level], 4 * at, 4 * at + 4, d);
+  }
+  return at;
+}
+
+Icosphere::Place Icosphere::PlaceIn(std::size_t triangle, const Vector3f& d) const {
   Place place;
-  place.corners = triangles_.back()[at];
-  const auto& [a, b, c] = place.corners;
-  place.weights = Shares(vertex(a), vertex(b), vertex(c), d).cwiseMax(0.0f);
+  place.corners = triangles_.back()[triangle];
+  place.weights = planes_.back()[triangle].Shares(d).cwiseMax(0.0f);
   place.weights /= place.weights.sum();
   return place;
+}
+
+Icosphere::Place Icosphere::Locate(const Vector3f& direction) const {
+  const Vector3f d = direction.normalized();
+  return PlaceIn(Find(d), d);
+}
+
+Icosphere::Place Icosphere::LocateNear(const Vector3f& direction, std::size_t* triangle) const {
+  const Vector3f d = direction.normalized();
+  if (planes_.back()[*triangle].Shares(d).minCoeff() <= kSurelyInside) *triangle = Find(d);
+  return PlaceIn(*triangle, d);
 }
 
 }  // namespace visavis

@@ -32,9 +32,26 @@ class Icosphere {
     Eigen::Vector3f weights;
   };
   Place Locate(const Eigen::Vector3f& direction) const;
+  /// The same, sooner where it is in triangle number *@p triangle, which is then set to that found.
+  Place LocateNear(const Eigen::Vector3f& direction, std::size_t* triangle) const;
 
  private:
+  /// The planes through the origin and a triangle's sides: the volumes that a direction spans with
+  /// two corners each, all >= 0 where it leads through the triangle.
+  struct Planes {
+    Eigen::Matrix3f normals;  ///< rows: opposite to corner 0, 1, 2
+    Eigen::Vector3f Shares(const Eigen::Vector3f& direction) const {
+      return {normals.row(0).dot(direction), normals.row(1).dot(direction),
+              normals.row(2).dot(direction)};
+    }
+  };
+
   void Subdivide();
+  std::vector<Planes> PlanesOf(const std::vector<Triangle>& triangles) const;
+  std::size_t Find(const Eigen::Vector3f& unit_direction) const;
+  Place PlaceIn(std::size_t triangle, const Eigen::Vector3f& unit_direction) const;
+  std::size_t Deepest(const std::vector<Planes>& planes, std::size_t begin, std::size_t end,
+                      const Eigen::Vector3f& direction) const;
   const Eigen::Vector3f& vertex(std::int32_t i) const {
     return vertices_[static_cast<std::size_t>(i)];
   }
@@ -42,6 +59,7 @@ class Icosphere {
   std::vector<Eigen::Vector3f> vertices_;
   /// By level; the children of triangle t are 4 t to 4 t + 3 of the next.
   std::vector<std::vector<Triangle>> triangles_;
+  std::vector<std::vector<Planes>> planes_;  ///< of triangles_
 };
 
 }  // namespace visavis

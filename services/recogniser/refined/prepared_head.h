@@ -6,18 +6,23 @@
 
 namespace visavis {
 
-/// A head and all that is made of it before it is looked for. Stays where it is: others point into
-/// it.
-struct PreparedHead {
-  PreparedHead(const RefinerConfig& config, const HeadGeometry& head);
-  PreparedHead(const PreparedHead&) = delete;
-  PreparedHead& operator=(const PreparedHead&) = delete;
+/// A head and what poses of it are refined with. Stays where it is: others point into it.
+struct FacedHead {
+  FacedHead(const RefinerConfig& config, const HeadGeometry& head);
+  FacedHead(const FacedHead&) = delete;
+  FacedHead& operator=(const FacedHead&) = delete;
 
   const HeadGeometry head;
   const HeadMesh mesh;
   const FacePoints face;
-  const MeshFitness coarse_fitness, fitness;
   PoseRefiner refiner;
+};
+
+/// All that is made of a head before it is looked for.
+struct PreparedHead : FacedHead {
+  PreparedHead(const RefinerConfig& config, const HeadGeometry& head);
+
+  const MeshFitness coarse_fitness, fitness;
 };
 
 }  // namespace visavis

@@ -72,5 +72,22 @@ TEST(IcosphereTest, AVertexIsFoundAtItself) {
   }
 }
 
+TEST(IcosphereTest, WhatWasFoundLastSpeedsUpTheSearchAndChangesNothing) {
+  const Icosphere sphere(4);
+  Random random(3);
+  std::size_t triangle = 7;
+  Eigen::Vector3f direction(0, 0, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const float step = i % 10 == 0 ? 2.0f : 0.02f;
+    const auto move = [&] { return step * static_cast<float>(random.Uniform() - 0.5); };
+    direction += Eigen::Vector3f(move(), move(), move());
+    const Icosphere::Place near = sphere.LocateNear(direction, &triangle);
+    const Icosphere::Place place = sphere.Locate(direction);
+    ASSERT_EQ(near.corners, place.corners) << i;
+    ASSERT_EQ(near.weights, place.weights) << i;
+    ASSERT_EQ(sphere.triangles()[triangle], place.corners) << i;
+  }
+}
+
 }  // namespace
 }  // namespace visavis
