@@ -116,7 +116,9 @@ void RunOurs(benchmark::State& state, bool refine) {
       return s.Fitness(phi);
     };
     population.Evaluate(fitness);
-    population.Shoot(3000, fitness);
+    const auto shot_fitness = [&](const Vector6d& phi, double) { return fitness(phi); };
+    for (const Individual& shot : population.Shoot(3000, shot_fitness))
+      population.Insert(shot.phi, shot.fitness);
     const auto distance = [&] {
       if (!refine) return s.Distance(population.best().phi);
       const RigidTransform X_CM = TransformFromPhi(population.best().phi);

@@ -37,47 +37,94 @@ M Within(V v, float from, float to) {
 VI Lower(VI pairs) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(pairs)); }
 VI Upper(VI pairs) { return hn::ShiftRight<16>(pairs); }
 
-PatternSums SumPatternTarget(const KernelEye& eye, const BandView& band,
-                             const PatternPoints& points, float highest) {
-  const D d;
-  const DI di;
-  const int width = static_cast<int>(hn::Lanes(d)), size = points.size();
-  const auto load = [&](const std::vector<float>& column, int i) {
-    return hn::LoadU(d, column.data() + i);
-  };
-  VI n = hn::Zero(di), x = n, y = n, xx = n, xy = n, yy = n;
-  const VI limit = hn::Set(di, kLargestBandStep), least = hn::Set(di, -kLargestBandStep);
-  for (int i = 0; i < size; i += width) {
+/// What an eye shows at the pattern's points, at the nearest samples.
+struct PatternEye {
+  const KernelEye& eye;
+  const BandView& band;
+  const PatternPoints& points;
+  float highest;
+
+  V Load(const std::vector<float>& column, int i) const {
+    return hn::LoadU(D(), column.data() + i);
+  }
+
+  /// Points of a vector from point @p i on that are turned to the eye.
+  M Turned(int i) const {
     const V away =
-        hn::Sub(load(points.n_dot_p, i), Dot(eye.p_ME, load(points.normal_x, i),
-                                             load(points.normal_y, i), load(points.normal_z, i)));
-    M counts = hn::Le(away, hn::Set(d, highest));
-    if (hn::AllFalse(d, counts)) continue;
-    const V p = load(points.x, i), q = load(points.y, i), r = load(points.z, i);
+        hn::Sub(Load(points.n_dot_p, i), Dot(eye.p_ME, Load(points.normal_x, i),
+                                             Load(points.normal_y, i), Load(points.normal_z, i)));
+    return hn::Le(away, hn::Set(D(), highest));
+  }
+  /// The clamped samples; takes those out of *@p counts that lie outside of the band.
+  VI Fetch(int i, M* counts) const {
+    const D d;
+    const DI di;
+    const V p = Load(points.x, i), q = Load(points.y, i), r = Load(points.z, i);
     const V z = hn::Max(Plus(Dot(eye.R[2], p, q, r), eye.t[2]), hn::Set(d, 0.05f));
     const V iz = hn::Div(hn::Set(d, 1.0f), z);
     const V u = Plus(hn::Mul(Times(Plus(Dot(eye.R[0], p, q, r), eye.t[0]), eye.fx), iz), eye.cx);
     const V v = Plus(hn::Mul(Times(Plus(Dot(eye.R[1], p, q, r), eye.t[1]), eye.fy), iz), eye.cy);
     const V a = Times(Plus(u, 0.5f - band.x0), band.scale);
     const V b = Times(Plus(v, 0.5f - band.y0), band.scale);
-    counts = hn::And(counts, hn::And(Within(a, 0, static_cast<float>(band.width)),
-                                     Within(b, 0, static_cast<float>(band.height))));
-    const VI column = hn::ConvertTo(di, hn::IfThenElseZero(counts, a));
-    const VI row = hn::ConvertTo(di, hn::IfThenElseZero(counts, b));
+    *counts = hn::And(*counts, hn::And(Within(a, 0, static_cast<float>(band.width)),
+                                       Within(b, 0, static_cast<float>(band.height))));
+    const VI column = hn::ConvertTo(di, hn::IfThenElseZero(*counts, a));
+    const VI row = hn::ConvertTo(di, hn::IfThenElseZero(*counts, b));
     const VI index = hn::Add(hn::Mul(row, hn::Set(di, band.width)), column);
     const VI fetched = hn::ShiftRight<3>(Lower(hn::GatherIndex(di, band.pairs, index)));
-    const auto mask = hn::RebindMask(di, counts);
-    const VI value = hn::IfThenElseZero(mask, hn::Min(hn::Max(fetched, least), limit));
-    const VI pattern = hn::IfThenElseZero(mask, hn::LoadU(di, points.value.data() + i));
-    n = hn::Sub(n, hn::VecFromMask(di, mask));
-    x = hn::Add(x, pattern);
-    y = hn::Add(y, value);
-    xx = hn::Add(xx, hn::Mul(pattern, pattern));
-    xy = hn::Add(xy, hn::Mul(pattern, value));
-    yy = hn::Add(yy, hn::Mul(value, value));
+    return hn::Min(hn::Max(fetched, hn::Set(di, -kLargestBandStep)), hn::Set(di, kLargestBandStep));
   }
-  const auto sum = [&](VI v) { return hn::GetLane(hn::SumOfLanes(di, v)); };
-  return {sum(n), sum(x), sum(y), sum(xx), sum(xy), sum(yy)};
+};
+
+struct CorrelationSums {
+  VI n, x, y, xx, xy, yy;
+
+  CorrelationSums() : n(hn::Zero(DI())), x(n), y(n), xx(n), xy(n), yy(n) {}
+  void Add(M counts, VI left, VI right) {
+    const auto mask = hn::RebindMask(DI(), counts);
+    const VI a = hn::IfThenElseZero(mask, left), b = hn::IfThenElseZero(mask, right);
+    n = hn::Sub(n, hn::VecFromMask(DI(), mask));
+    x = hn::Add(x, a);
+    y = hn::Add(y, b);
+    xx = hn::Add(xx, hn::Mul(a, a));
+    xy = hn::Add(xy, hn::Mul(a, b));
+    yy = hn::Add(yy, hn::Mul(b, b));
+  }
+  PatternSums Total() const {
+    const auto sum = [](VI v) { return hn::GetLane(hn::SumOfLanes(DI(), v)); };
+    return {sum(n), sum(x), sum(y), sum(xx), sum(xy), sum(yy)};
+  }
+};
+
+PatternSums SumPatternTarget(const KernelEye& eye, const BandView& band,
+                             const PatternPoints& points, float highest) {
+  const D d;
+  const int width = static_cast<int>(hn::Lanes(d)), size = points.size();
+  const PatternEye seen{eye, band, points, highest};
+  CorrelationSums sums;
+  for (int i = 0; i < size; i += width) {
+    M counts = seen.Turned(i);
+    if (hn::AllFalse(d, counts)) continue;
+    const VI value = seen.Fetch(i, &counts);
+    sums.Add(counts, hn::LoadU(DI(), points.value.data() + i), value);
+  }
+  return sums.Total();
+}
+
+PatternSums SumAgreementTarget(const KernelEye eyes[2], const BandView bands[2],
+                               const PatternPoints& points, const float highest[2]) {
+  const D d;
+  const int width = static_cast<int>(hn::Lanes(d)), size = points.size();
+  const PatternEye right{eyes[0], bands[0], points, highest[0]};
+  const PatternEye left{eyes[1], bands[1], points, highest[1]};
+  CorrelationSums sums;
+  for (int i = 0; i < size; i += width) {
+    M counts = hn::And(right.Turned(i), left.Turned(i));
+    if (hn::AllFalse(d, counts)) continue;
+    const VI x = right.Fetch(i, &counts), y = left.Fetch(i, &counts);
+    sums.Add(counts, x, y);
+  }
+  return sums.Total();
 }
 
 // The 4 x 4 neighbourhood without its corners: value and gradient [levels, a px], interpolated.
@@ -285,6 +332,7 @@ HWY_AFTER_NAMESPACE();
 namespace visavis {
 
 HWY_EXPORT(SumPatternTarget);
+HWY_EXPORT(SumAgreementTarget);
 HWY_EXPORT(SamplePointsTarget);
 HWY_EXPORT(SumPairsTarget);
 HWY_EXPORT(AddPairsTarget);
@@ -292,6 +340,11 @@ HWY_EXPORT(AddPairsTarget);
 PatternSums SumPattern(const KernelEye& eye, const BandView& band, const PatternPoints& points,
                        float highest) {
   return HWY_DYNAMIC_DISPATCH(SumPatternTarget)(eye, band, points, highest);
+}
+
+PatternSums SumAgreement(const KernelEye eyes[2], const BandView bands[2],
+                         const PatternPoints& points, const float highest[2]) {
+  return HWY_DYNAMIC_DISPATCH(SumAgreementTarget)(eyes, bands, points, highest);
 }
 
 void SamplePoints(const KernelEye& eye, const BandView& band, const FaceArrays& face,

@@ -42,6 +42,11 @@ inline constexpr int kMostPatternPoints = 2000;
 PatternSums SumPattern(const KernelEye& eye, const BandView& band, const PatternPoints& points,
                        float highest);
 
+/// Sums for the correlation of what the right eye shows at the points (x) with what the left one
+/// does (y), over those that count for both. Exact integers.
+PatternSums SumAgreement(const KernelEye eyes[2], const BandView bands[2],
+                         const PatternPoints& points, const float highest[2]);
+
 /// Arrays of n points: coordinates one point after the other, in M [m].
 struct FaceArrays {
   const float *points, *normals;

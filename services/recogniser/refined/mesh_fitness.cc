@@ -135,6 +135,14 @@ void MeshFitness::AddCorrelation(const StereoView& view, const Poses& poses,
   score->ncc /= std::max(eyes, 1);
 }
 
+void MeshFitness::AddAgreement(const StereoView& view, const Poses& poses, MeshScore* score) const {
+  if (!view[0].seen() || !view[1].seen()) return;
+  const BandView bands[] = {view[0].bands->view(kCoarseBand), view[1].bands->view(kCoarseBand)};
+  const float highest[] = {-kPatternFacing * poses[0].distance,
+                           -kPatternFacing * poses[1].distance};
+  score->agreement = SumAgreement(poses.data(), bands, pattern_, highest).correlation();
+}
+
 void MeshFitness::AddInside(const StereoView& view, const Poses& poses, MeshScore* score) const {
   int eyes = 0;
   for (std::size_t e = 0; e < 2; ++e) {
@@ -167,13 +175,30 @@ MeshScore MeshFitness::Evaluate(const StereoView& view, const RigidTransform& X_
   return score;
 }
 
-double MeshFitness::TotalIfWorth(const StereoView& view, const RigidTransform& X_CM,
+MeshScore MeshFitness::Look(const StereoView& view, const RigidTransform& X_CM) const {
+  MeshScore score = Evaluate(view, X_CM);
+  AddAgreement(view, PosesOf(view, X_CM), &score);
+  return score;
+}
+
+double MeshFitness::FoundIfWorth(const StereoView& view, const RigidTransform& X_CM,
                                  double worth) const {
+  if (!view[0].seen() || !view[1].seen()) return Look(view, X_CM).found();
   StereoView one = view;
   one[1].scores = nullptr;
-  const MeshScore right = Evaluate(one, X_CM);
-  if (right.has_ncc && right.total() < worth - kOneEyeMargin) return right.total();
-  return Evaluate(view, X_CM).total();
+  MeshScore right = Evaluate(one, X_CM);
+  const double least = worth - kOneEyeMargin;
+  if (right.total() + MeshScore::kAgreementWeight < least) return right.total();
+  AddAgreement(view, PosesOf(view, X_CM), &right);
+  if (right.found() < least) return right.found();
+  one = view;
+  one[0].scores = nullptr;
+  const MeshScore left = Evaluate(one, X_CM);
+  MeshScore both = right;
+  both.inside = 0.5 * (right.inside + left.inside);
+  both.outside = 0.5 * (right.outside + left.outside);
+  both.ncc = 0.5 * (right.ncc + left.ncc);
+  return both.found();
 }
 
 }  // namespace visavis

@@ -13,12 +13,17 @@ namespace visavis {
 
 /// How well a pose explains the pictures; each a mean over the eyes.
 struct MeshScore {
-  double inside{0};   ///< colours on the head: about 1 where they are a head's
-  double outside{0};  ///< colours round the head: about 1 where they are a head's too (bad)
-  double ncc{0};      ///< correlation of the coarse band with the face's pattern, -1 to 1
+  double inside{0};     ///< colours on the head: about 1 where they are a head's
+  double outside{0};    ///< colours round the head: about 1 where they are a head's too (bad)
+  double ncc{0};        ///< correlation of the coarse band with the face's pattern, -1 to 1
+  double agreement{0};  ///< correlation of both eyes' coarse bands on the face, -1 to 1
   bool has_color{false}, has_ncc{false};
-  /// What the search maximises.
+  /// What a track's population maximises.
   double total() const;
+  /// What the search maximises: a likeness that both eyes see at one depth.
+  double found() const { return total() + kAgreementWeight * agreement; }
+
+  static constexpr double kAgreementWeight = 0.8;
 };
 
 /// The fitness that the population is judged by: a solid model's inside, its surroundings (Eqs. 22
@@ -32,9 +37,12 @@ class MeshFitness {
   /// every SIMD target. No allocation.
   MeshScore Evaluate(const StereoView& view, const RigidTransform& X_CM) const;
 
-  /// The same as total(), for many poses of which few are wanted: what the right eye shows decides
-  /// alone where that is less than @p worth by 0.3.
-  double TotalIfWorth(const StereoView& view, const RigidTransform& X_CM, double worth) const;
+  /// The same and the eyes' agreement.
+  MeshScore Look(const StereoView& view, const RigidTransform& X_CM) const;
+
+  /// Look()'s found(), for many poses of which few are wanted: where what the right eye
+  /// shows, with the left one's agreement, is less than @p worth by 0.3, that decides alone.
+  double FoundIfWorth(const StereoView& view, const RigidTransform& X_CM, double worth) const;
 
   /// A glance at a few places of the face: mean skin score in units of 2 nats. Poses that fail it
   /// need no evaluation. 1 on grey pictures.
@@ -46,6 +54,7 @@ class MeshFitness {
   void AddPattern(const FacePoints& face, std::size_t step);
   static Poses PosesOf(const StereoView& view, const RigidTransform& X_CM);
   void AddCorrelation(const StereoView& view, const Poses& poses, MeshScore* score) const;
+  void AddAgreement(const StereoView& view, const Poses& poses, MeshScore* score) const;
   void AddInside(const StereoView& view, const Poses& poses, MeshScore* score) const;
   void AddOutside(const StereoView& view, const Poses& poses, MeshScore* score) const;
 

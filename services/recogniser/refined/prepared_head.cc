@@ -17,6 +17,7 @@ FacedHead::FacedHead(const RefinerConfig& config, const HeadGeometry& geometry)
 PreparedHead::PreparedHead(const RefinerConfig& config, const HeadGeometry& geometry)
     : FacedHead(config, geometry),
       coarse_fitness(MeshOf(head.surface, kCoarseMeshLevel), face, 2),
-      fitness(MeshOf(head.surface, kCoarseMeshLevel), face, 1) {}
+      fitness(MeshOf(head.surface, kCoarseMeshLevel), face, 1),
+      contrast(MeshOf(head.surface, kCoarseMeshLevel)) {}
 
 }  // namespace visavis

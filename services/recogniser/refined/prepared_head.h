@@ -1,5 +1,6 @@
 #pragma once
 
+#include "services/recogniser/refined/color_contrast.h"
 #include "services/recogniser/refined/head_geometry.h"
 #include "services/recogniser/refined/mesh_fitness.h"
 #include "services/recogniser/refined/pose_refiner.h"
@@ -23,6 +24,7 @@ struct PreparedHead : FacedHead {
   PreparedHead(const RefinerConfig& config, const HeadGeometry& head);
 
   const MeshFitness coarse_fitness, fitness;
+  const ColorContrast contrast;
 };
 
 }  // namespace visavis

@@ -11,6 +11,8 @@ constexpr double kLargestScale = 0.25;  ///< of a mutation, in ranges
 constexpr double kAngleSigma = 0.2;     ///< of shots' angles, in ranges
 constexpr double kDecades = 2.2;        ///< between the largest scale and the smallest
 
+bool IsFitter(const Individual& a, const Individual& b) { return a.fitness > b.fitness; }
+
 }  // namespace
 
 RealPopulation::RealPopulation(const RealGaConfig& config, std::uint64_t seed)
@@ -19,6 +21,7 @@ RealPopulation::RealPopulation(const RealGaConfig& config, std::uint64_t seed)
       random_(seed),
       individuals_(static_cast<std::size_t>(config.individuals)) {
   children_.reserve(individuals_.size());
+  shots_.reserve(kMostShots);
   Restart();
 }
 
@@ -47,9 +50,7 @@ void RealPopulation::Move(const std::function<void(Vector6d*)>& move) {
 // Insertion, which is stable and, unlike std::stable_sort, allocates nothing.
 void RealPopulation::Sort() {
   for (auto it = individuals_.begin(); it != individuals_.end(); ++it) {
-    const auto place = std::upper_bound(
-        individuals_.begin(), it, *it,
-        [](const Individual& a, const Individual& b) { return a.fitness > b.fitness; });
+    const auto place = std::upper_bound(individuals_.begin(), it, *it, IsFitter);
     std::rotate(place, it, it + 1);
   }
 }
@@ -73,10 +74,11 @@ void RealPopulation::Insert(const Vector6d& phi, double fitness) {
   *place = individual;
 }
 
-int RealPopulation::Shoot(int count, const FitnessFunction& fitness) {
+const std::vector<Individual>& RealPopulation::Shoot(int count, const ShotFitness& fitness) {
   // Positions from an additive recurrence that fills space evenly, begun at random.
   constexpr double kRatios[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   double place[3] = {random_.Uniform(), random_.Uniform(), random_.Uniform()};
+  shots_.clear();
   for (int i = 0; i < count; ++i) {
     Vector6d phi;
     for (int k = 0; k < 3; ++k) {
@@ -88,9 +90,14 @@ int RealPopulation::Shoot(int count, const FitnessFunction& fitness) {
                kAngleSigma * (space_.max[k] - space_.min[k]) * random_.Normal();
     }
     phi = space_.Clamp(phi);
-    Insert(phi, fitness(phi));
+    const bool is_full = shots_.size() == kMostShots;
+    const double worth = is_full ? shots_.back().fitness : -INFINITY;
+    const Individual shot{phi, fitness(phi, worth), true};
+    if (shot.fitness <= worth) continue;
+    if (is_full) shots_.pop_back();
+    shots_.insert(std::upper_bound(shots_.begin(), shots_.end(), shot, IsFitter), shot);
   }
-  return count;
+  return shots_;
 }
 
 Vector6d RealPopulation::Child() {

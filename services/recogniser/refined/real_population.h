@@ -48,9 +48,12 @@ class RealPopulation {
 
   /// Fitness of all under the current pictures; sorts. @return evaluations.
   int Evaluate(const FitnessFunction& fitness);
-  /// @p count poses, evenly spread over the positions and with random angles, mostly small; those
-  /// better than the worst take its place. @return evaluations.
-  int Shoot(int count, const FitnessFunction& fitness);
+  /// @p count poses, evenly spread over the positions and with random angles, mostly small.
+  /// @return the best kMostShots of them, fittest first, until the next call. @p fitness is told
+  /// what a shot must exceed to be among them.
+  using ShotFitness = std::function<double(const Vector6d& phi, double worth)>;
+  const std::vector<Individual>& Shoot(int count, const ShotFitness& fitness);
+  static constexpr std::size_t kMostShots = 120;
   /// One generation: the elite stays, children take the places of the rest. @return evaluations.
   int Reproduce(const FitnessFunction& fitness);
   /// Takes @p phi in, in the worst's place.
@@ -67,7 +70,7 @@ class RealPopulation {
   RealGaConfig config_;
   SearchSpace space_;
   Random random_;
-  std::vector<Individual> individuals_, children_;
+  std::vector<Individual> individuals_, children_, shots_;
 };
 
 }  // namespace visavis

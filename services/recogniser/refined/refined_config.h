@@ -36,7 +36,7 @@ struct EvidenceConfig {
   }
   double lock_ncc{0.2};               ///< generic pattern, before TRACKING
   double lock_gray_ncc{0.5};          ///< the same where the pictures are grey
-  double lock_stereo_ncc{0.7};        ///< agreement of both eyes, before TRACKING
+  double lock_stereo_ncc{0.92};       ///< agreement of both eyes, before TRACKING
   double lock_gray_stereo_ncc{0.96};  ///< the same where the pictures are grey
   double lock_outside{-0.5};          ///< at most: how much the surroundings look like a head
   double lock_inside{0.4};            ///< at least: how much the inside does
@@ -100,8 +100,8 @@ struct RefinedConfig {
   /// [ms] Live only: where a frame takes longer, the next ones run fewer evaluations. 0: never.
   double budget_ms{100};
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
-  int search_shots{3000};       ///< poses glanced at, in a frame without
-  int search_evaluations{800};  ///< of the fitness by the GA after them
+  int search_shots{2500};       ///< poses glanced at, in a frame without
+  int search_evaluations{200};  ///< of the fitness by the GA after them
   int search_starts{5};         ///< best distinct individuals that are refined then
   int iterations{4};            ///< Gauss-Newton, in a frame with a track
   int search_iterations{8};     ///< Gauss-Newton, of each start

@@ -80,6 +80,8 @@ class RefinedEstimator final : public Estimator {
   Candidate Search();
   /// The same; where several faces are in view and none is known, the one that is wanted.
   Candidate SearchNearest();
+  /// ColorContrast of one eye; the other would tell the same.
+  double Contrast(const RigidTransform& X_CM) const;
   bool WasRejected(const Vector6d& phi) const;
   void RejectPlaces();
   std::vector<RigidTransform> DistinctPlaces() const;
@@ -95,6 +97,7 @@ class RefinedEstimator final : public Estimator {
   bool BothEyes() const { return view_[0].seen() && view_[1].seen(); }
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
+  bool IsPromising(const Candidate& candidate) const;
   bool IsKnownFace(const Candidate& candidate, double least_texture_ncc) const;
   double FindTextureNcc() const {
     const EvidenceConfig& e = settings_.refined.evidence;

@@ -1,6 +1,8 @@
 // How the refined estimator finds a head whose pose is not known: many glances, a GA, the most
 // promising places refined from several sides, the best of them verified by learning from it.
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "services/recogniser/refined/refined_estimator.h"
 
@@ -9,16 +11,21 @@ namespace {
 
 constexpr double kLeastGlance = -0.5;  ///< below: not worth an evaluation
 constexpr double kHopeless = -3;       ///< fitness then
+constexpr double kContrastWeight =
+    2;  ///< of the colours' contrast, 0 to 1, in the search's fitness
 constexpr double kRejected_m = 0.05, kRejectedDepth_m = 0.15;
 constexpr std::size_t kMostRejected = 12;
 constexpr int kForgiveEvery = 4;  ///< searches in a row
 constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
 constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17;
+constexpr std::array<double, 4> kTurns_rad = {0.3, -0.3, 0.55, -0.55};
+constexpr int kTurnedReach_px = 9;
 constexpr int kFirstIterations = 4;  ///< of each start
 constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;   ///< best places that are verified
-constexpr int kVerifyRounds = 2;
+constexpr int kVerifyRounds = 2, kMoreRounds = 2;
+constexpr double kPromisingInside = 0.4, kPromisingOutside = -0.15;
 constexpr int kMostFaces = 4;          ///< that are told apart by search.nearest_to
 constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
 constexpr int kFewestShots = 100, kFewestEvaluations = 20;  ///< where the clock lowers them
@@ -39,31 +46,51 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     ++estimate_.evaluations;
     return evaluate(X);
   };
+  const auto with_contrast = [&](double found, const RigidTransform& X) {
+    return found + kContrastWeight * Contrast(X);
+  };
   const auto fitness = [&](const Vector6d& phi) {
     return unless_hopeless(phi, [&](const RigidTransform& X) {
-      return head().coarse_fitness.Evaluate(view_, X).total();
+      return with_contrast(head().coarse_fitness.Look(view_, X).found(), X);
     });
   };
-  // A shot is taken in only where it beats the worst.
-  const auto shot_fitness = [&](const Vector6d& phi) {
+  // A child is taken in only where it beats the worst.
+  const auto child_fitness = [&](const Vector6d& phi) {
     return unless_hopeless(phi, [&](const RigidTransform& X) {
-      return head().coarse_fitness.TotalIfWorth(view_, X, population_.individuals().back().fitness);
+      const double worth = population_.individuals().back().fitness - kContrastWeight;
+      const double found = head().coarse_fitness.FoundIfWorth(view_, X, worth);
+      return found < worth ? found : with_contrast(found, X);
+    });
+  };
+  const auto shot_fitness = [&](const Vector6d& phi, double worth) {
+    return unless_hopeless(phi, [&](const RigidTransform& X) {
+      return head().coarse_fitness.FoundIfWorth(view_, X, worth);
     });
   };
   population_.Evaluate(fitness);
   const RefinedConfig& r = settings_.refined;
-  population_.Shoot(Lowered(r.search_shots, effort_.searching, kFewestShots), shot_fitness);
+  for (const Individual& shot :
+       population_.Shoot(Lowered(r.search_shots, effort_.searching, kFewestShots), shot_fitness)) {
+    if (shot.fitness <= kHopeless) continue;
+    population_.Insert(shot.phi, with_contrast(shot.fitness, TransformFromPhi(shot.phi)));
+  }
   const int evaluations = Lowered(r.search_evaluations, effort_.searching, kFewestEvaluations);
   const int until = estimate_.evaluations + evaluations;
   const int most = estimate_.generations + evaluations / 10;
   while (estimate_.evaluations < until && estimate_.generations < most) {
-    population_.Reproduce(fitness);
+    population_.Reproduce(child_fitness);
     ++estimate_.generations;
   }
   colors_before_ = colors_;
   RefineStarts(DistinctPlaces());
   if (const auto known = KnownAmongCandidates()) return *known;
   return Recognise(BestVerified());
+}
+
+double RefinedEstimator::Contrast(const RigidTransform& X_CM) const {
+  const std::size_t eye = view_[0].seen() ? 0 : 1;
+  if (!view_[eye].seen()) return 0;
+  return head().contrast.Of(*pictures_[eye], pair_.eye(eye), X_CM);
 }
 
 // Each face found is put aside until no other is found. The learned colours and the maps are those
@@ -217,28 +244,46 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
     if (tried == kVerified) break;
   }
   colors_ = colors_best_;
-  return TryTurned(*best);
+  Candidate found = TryTurned(*best);
+  for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
+    found = Verify(found);
+  return found;
+}
+
+// All but the colours speak for a face, and they do not speak against it: they need more learning.
+bool RefinedEstimator::IsPromising(const Candidate& c) const {
+  const EvidenceConfig& e = settings_.refined.evidence;
+  return c.score.has_color && IsPlausible(c.refined.X_CM) && BothEyes() &&
+         c.refined.stereo_ncc > e.lock_stereo_ncc && c.score.ncc > e.lock_ncc &&
+         c.score.inside > kPromisingInside && c.score.outside < kPromisingOutside;
 }
 
 // A face seen askew may have been fitted upside down into its own features: turned starts with the
-// colours that are now known tell.
+// colours that are now known tell. A few steps for all of them, the rest for the best.
 RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candidate) {
   const RigidTransform X = candidate.refined.X_CM;
   if (!X.matrix().allFinite()) return candidate;
   BuildMaps(&X);
-  Candidate best = candidate;
+  Candidate best = candidate, turned;
   const auto consider = [&](const Eigen::Matrix3d& R_CM) {
     const Candidate other = RefineFrom(MakeTransform(R_CM, X.translation()), nullptr,
-                                       settings_.refined.search_iterations, 9);
-    if (IsPlausible(other.refined.X_CM) && other.merit() > best.merit()) best = other;
+                                       kFirstIterations, kTurnedReach_px);
+    const bool is_first = !turned.refined.X_CM.matrix().allFinite();
+    if (IsPlausible(other.refined.X_CM) && (is_first || other.merit() > turned.merit()))
+      turned = other;
   };
-  for (const double turn : {kTurn_rad, -kTurn_rad}) {
+  turned.refined.X_CM.matrix().setConstant(NAN);
+  for (const double turn : kTurns_rad) {
     consider(X.linear() * ExpRotation({turn, 0, 0}));
     consider(X.linear() * ExpRotation({0, turn, 0}));
   }
   const Eigen::Vector3d angles = AnglesFromRotation(X.linear());
   consider(RotationFromAngles({angles[0], -angles[1], angles[2]}));
   consider(RotationFromAngles({angles[0], angles[1], -angles[2]}));
+  if (!turned.refined.X_CM.matrix().allFinite()) return best;
+  turned = RefineFrom(turned.refined.X_CM, nullptr, settings_.refined.search_iterations,
+                      kTurnedReach_px);
+  if (IsPlausible(turned.refined.X_CM) && turned.merit() > best.merit()) best = turned;
   return best;
 }
 

@@ -151,5 +151,47 @@ TEST_F(FaceKernelTest, PatternSumsHoldTheLargestBand) {
   }
 }
 
+// A sum over the points that count for both is that of each eye by itself where all do.
+TEST_F(FaceKernelTest, AgreementIsTheCorrelationOfBothEyesSamples) {
+  PatternPoints points;
+  Random random(5);
+  for (int i = 0; i < 61; ++i) {
+    const auto draw = [&] { return static_cast<float>(random.Uniform(-0.05, 0.05)); };
+    points.Add({draw(), draw(), 0}, {0, 0, -1}, 0, i);
+  }
+  points.Pad();
+  std::vector<std::int32_t> right_pairs, left_pairs;
+  for (int i = 0; i < 64; ++i) {
+    right_pairs.push_back(static_cast<int>(random.Uniform(-7000, 7000)) & 0xffff);
+    left_pairs.push_back(static_cast<int>(random.Uniform(-7000, 7000)) & 0xffff);
+  }
+  const BandView bands[] = {{right_pairs.data(), 8, 8, 0, 0, 0.25f},
+                            {left_pairs.data(), 8, 8, 0, 0, 0.25f}};
+  Pinhole camera;
+  camera.width = camera.height = 32;
+  camera.fx = camera.fy = 200;
+  camera.cx = camera.cy = 16;
+  const EyeGeometry geometry(camera, RigidTransform::Identity());
+  const RigidTransform ahead = MakeTransform(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 0, 1));
+  const KernelEye eye(geometry, EyePose(geometry, ahead));
+  const KernelEye eyes[] = {eye, eye};
+  const float highest[] = {-0.1f, -0.1f};
+  for (const std::string& target : ListSimdTargets()) {
+    SelectSimdTarget(target.c_str());
+    const PatternSums both = SumAgreement(eyes, bands, points, highest);
+    const PatternSums right = SumPattern(eye, bands[0], points, highest[0]);
+    const PatternSums left = SumPattern(eye, bands[1], points, highest[1]);
+    EXPECT_EQ(both.n, 61);
+    EXPECT_EQ(both.x, right.y);
+    EXPECT_EQ(both.xx, right.yy);
+    EXPECT_EQ(both.y, left.y);
+    EXPECT_EQ(both.yy, left.yy);
+    const BandView same[] = {bands[0], bands[0]};
+    EXPECT_EQ(SumAgreement(eyes, same, points, highest).xy, right.yy);
+    const float turned_away[] = {-0.1f, -2.0f};
+    EXPECT_EQ(SumAgreement(eyes, bands, points, turned_away).n, 0);
+  }
+}
+
 }  // namespace
 }  // namespace visavis

@@ -50,6 +50,31 @@ TEST_F(MeshFitnessTest, TheTruePoseBeatsDisplacedOnes) {
   }
 }
 
+TEST_F(MeshFitnessTest, BothEyesAgreeAtTheTrueDepthAlone) {
+  const auto look = [&](double mm) {
+    return fitness_.Look(view_, TransformFromPhi(kTruth + PhiOf(0, 0, mm, 0, 0, 0)));
+  };
+  EXPECT_GT(look(0).agreement, 0.9);
+  for (const double mm : {-120.0, 120.0}) EXPECT_LT(look(mm).agreement, 0.6) << mm;
+  EXPECT_EQ(look(0).found(), look(0).total() + MeshScore::kAgreementWeight * look(0).agreement);
+  EXPECT_EQ(look(0).total(), ScoreAside(Vector6d::Zero()).total());
+}
+
+TEST_F(MeshFitnessTest, OneEyeHasNoneToAgreeWith) {
+  StereoView one = view_;
+  one[1].scores = nullptr;
+  EXPECT_EQ(fitness_.Look(one, TransformFromPhi(kTruth)).agreement, 0);
+}
+
+TEST_F(MeshFitnessTest, WhatIsWorthItIsFoundAsByLookingAndTheRestIsWorthLess) {
+  for (const Vector6d& aside : Displacements()) {
+    const RigidTransform X_CM = TransformFromPhi(kTruth + aside);
+    const double found = fitness_.Look(view_, X_CM).found();
+    EXPECT_NEAR(fitness_.FoundIfWorth(view_, X_CM, -10), found, 1e-9);
+    EXPECT_LT(fitness_.FoundIfWorth(view_, X_CM, 10), 9.7);
+  }
+}
+
 TEST_F(MeshFitnessTest, OneInThreePointsTellsTheSame) {
   const MeshFitness coarse(MeshOf(SharedAdultHead().surface, 3), SharedAdultHead().face, 3);
   const double truth = coarse.Evaluate(view_, TransformFromPhi(kTruth)).total();

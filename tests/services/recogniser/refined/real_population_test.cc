@@ -35,6 +35,8 @@ double Sphere(const Vector6d& phi) {
   return -(phi - kGoal).cwiseQuotient(TestSpace().range()).squaredNorm();
 }
 
+double ShotSphere(const Vector6d& phi, double /*worth*/) { return Sphere(phi); }
+
 RealPopulation APopulation(std::uint64_t seed = 1) {
   RealPopulation population(TestGa(), seed);
   population.SetSpace(TestSpace());
@@ -92,8 +94,6 @@ TEST(RealPopulationTest, StaysSortedFullAndWithinTheSpaceWhateverIsCalled) {
   for (int i = 0; i < 10; ++i) {
     population.Reproduce(Sphere);
     EXPECT_TRUE(IsSorted(population));
-    population.Shoot(25, Sphere);
-    EXPECT_TRUE(IsSorted(population));
     population.Insert(kGoal, Sphere(kGoal) - 0.02);
     EXPECT_TRUE(IsSorted(population));
     ExpectWithinSpace(population);
@@ -104,7 +104,10 @@ TEST(RealPopulationTest, StaysSortedFullAndWithinTheSpaceWhateverIsCalled) {
 TEST(RealPopulationTest, FitnessBelongsToThePoseAfterEachCall) {
   RealPopulation population = APopulation();
   population.Evaluate(Sphere);
-  population.Shoot(100, Sphere);
+  for (const Individual& shot : population.Shoot(100, ShotSphere)) {
+    EXPECT_EQ(shot.fitness, Sphere(shot.phi));
+    population.Insert(shot.phi, shot.fitness);
+  }
   for (int i = 0; i < 5; ++i) population.Reproduce(Sphere);
   for (const Individual& individual : population.individuals()) {
     EXPECT_EQ(individual.fitness, Sphere(individual.phi));
@@ -158,38 +161,44 @@ TEST(RealPopulationTest, ShootCoversThePositionsEvenly) {
   constexpr int kCells = 5, kShots = 2500;
   std::array<int, kCells * kCells * kCells> hits{};
   const SearchSpace space = TestSpace();
-  EXPECT_EQ(population.Shoot(
-                kShots,
-                [&](const Vector6d& phi) {
-                  int cell = 0;
-                  for (int k = 0; k < 3; ++k) {
-                    const double share = (phi[k] - space.min[k]) / (space.max[k] - space.min[k]);
-                    cell = kCells * cell + std::min(static_cast<int>(kCells * share), kCells - 1);
-                  }
-                  ++hits[static_cast<std::size_t>(cell)];
-                  return -1.0;
-                }),
-            kShots);
+  population.Shoot(kShots, [&](const Vector6d& phi, double) {
+    int cell = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double share = (phi[k] - space.min[k]) / (space.max[k] - space.min[k]);
+      cell = kCells * cell + std::min(static_cast<int>(kCells * share), kCells - 1);
+    }
+    ++hits[static_cast<std::size_t>(cell)];
+    return -1.0;
+  });
   // 20 a cell; independent random places would leave cells below 10 and above 32.
   EXPECT_GE(*std::min_element(hits.begin(), hits.end()), 14);
   EXPECT_LE(*std::max_element(hits.begin(), hits.end()), 26);
 }
 
-TEST(RealPopulationTest, ShotsAreMostlyUprightAndKeepOnlyWhatBeatsTheWorst) {
+TEST(RealPopulationTest, ShotsAreMostlyUprightAndTheBestAreKeptInOrder) {
   RealPopulation population = APopulation();
-  population.Evaluate(Sphere);
-  const double worst = population.individuals().back().fitness;
-  int shots = 0, upright = 0, better = 0;
-  population.Shoot(400, [&](const Vector6d& phi) {
-    ++shots;
-    upright += phi.tail<3>().cwiseAbs().maxCoeff() < 0.6 * TestSpace().max[3];
-    better += Sphere(phi) > worst;
-    return Sphere(phi);
-  });
-  EXPECT_EQ(shots, 400);
+  std::vector<double> all;
+  int upright = 0;
+  double last_worth = -INFINITY;
+  const std::vector<Individual>& best =
+      population.Shoot(400, [&](const Vector6d& phi, double worth) {
+        upright += phi.tail<3>().cwiseAbs().maxCoeff() < 0.6 * TestSpace().max[3];
+        EXPECT_GE(worth, last_worth);
+        last_worth = worth;
+        all.push_back(Sphere(phi));
+        return all.back();
+      });
+  EXPECT_EQ(all.size(), 400u);
   EXPECT_GT(upright, 200);  // uniform angles: 86
-  EXPECT_GT(better, 100);
-  EXPECT_GT(population.individuals().back().fitness, worst);
+  std::sort(all.rbegin(), all.rend());
+  ASSERT_EQ(best.size(), RealPopulation::kMostShots);
+  for (std::size_t i = 0; i < best.size(); ++i) EXPECT_EQ(best[i].fitness, all[i]) << i;
+}
+
+TEST(RealPopulationTest, ShotsOfEarlierAreForgotten) {
+  RealPopulation population = APopulation();
+  population.Shoot(200, ShotSphere);
+  EXPECT_EQ(population.Shoot(7, ShotSphere).size(), 7u);
 }
 
 TEST(RealPopulationTest, RenewKeepsTheBestShare) {
@@ -222,7 +231,8 @@ TEST(RealPopulationTest, TheSameSeedGivesTheSamePopulationAnotherSeedAnother) {
   const auto run = [](std::uint64_t seed) {
     RealPopulation population = APopulation(seed);
     population.Evaluate(Sphere);
-    population.Shoot(50, Sphere);
+    for (const Individual& shot : population.Shoot(50, ShotSphere))
+      population.Insert(shot.phi, shot.fitness);
     for (int i = 0; i < 5; ++i) population.Reproduce(Sphere);
     std::vector<double> numbers;
     for (const Individual& individual : population.individuals()) {
@@ -258,11 +268,12 @@ TEST(RealPopulationTest, NothingIsAllocatedAfterConstruction) {
   if (NumMallocs() < 0) GTEST_SKIP() << "a sanitizer owns the allocator";
   RealPopulation population = APopulation();
   const RealPopulation::FitnessFunction fitness = Sphere;
+  const RealPopulation::ShotFitness shot_fitness = ShotSphere;
   const std::function<void(Vector6d*)> move = [](Vector6d* phi) { (*phi)[0] += 0.001; };
   const std::int64_t before = NumMallocs();
   population.Evaluate(fitness);
   population.Reproduce(fitness);
-  population.Shoot(20, fitness);
+  population.Shoot(300, shot_fitness);
   population.Insert(kGoal, 0);
   population.Move(move);
   population.Renew(0.3);

@@ -1,0 +1,85 @@
+#include "services/recogniser/refined/color_contrast.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace visavis {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int kShift = 5, kBins = 512;  ///< eight levels of each colour
+constexpr float kFacing = 0.3f, kGrazing = 0.2f;
+constexpr std::array<float, 2> kBeyond_m = {0.014f, 0.030f};
+constexpr int kInsideStep = 2;  ///< one point in so many
+constexpr double kSkinShare = 0.6;
+constexpr int kFewest = 10;  ///< points of a kind that tell anything
+
+struct Histogram {
+  std::array<int, kBins> bins{};
+  int total{0};
+
+  void Add(int bin) {
+    ++bins[static_cast<std::size_t>(bin)];
+    ++total;
+  }
+  /// 1 less what both have in common.
+  double Differs(const Histogram& other) const {
+    if (total < kFewest || other.total < kFewest) return 0;
+    std::int64_t common = 0;  // times both totals
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      common += std::min(std::int64_t{bins[i]} * other.total, std::int64_t{other.bins[i]} * total);
+    }
+    return 1 - static_cast<double>(common) /
+                   (static_cast<double>(total) * static_cast<double>(other.total));
+  }
+};
+
+}  // namespace
+
+ColorContrast::ColorContrast(const HeadMesh& mesh) {
+  int num_inside = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Point point{mesh.vertices[i], mesh.normals[i]};
+    if (mesh.coloured[i] && num_inside++ % kInsideStep == 0)
+      (mesh.parts[i] == HeadPart::kHair ? hair_ : skin_).push_back(point);
+    if (mesh.contour_weights[i] > 0) outline_.push_back(point);
+  }
+}
+
+double ColorContrast::Of(const ImageView& picture, const EyeGeometry& eye,
+                         const RigidTransform& X_CM) const {
+  if (picture.format == PixelFormat::kGray) return 0;
+  const EyePose pose(eye, X_CM);
+  const int red = picture.format == PixelFormat::kBgr ? 2 : 0;
+  Histogram skin, hair, round;
+  const auto add = [&](const Vector3f& p_M, Histogram* histogram) {
+    const Vector3f p = pose.InEye(p_M);
+    if (!(p.z() > 0.1f)) return;
+    const float u = eye.cx + eye.fx * p.x() / p.z() + 0.5f;
+    const float v = eye.cy + eye.fy * p.y() / p.z() + 0.5f;
+    if (!(u >= 0 && v >= 0 && u < static_cast<float>(eye.width) &&
+          v < static_cast<float>(eye.height)))
+      return;
+    const std::uint8_t* rgb = picture.row(static_cast<int>(v)) + 3 * static_cast<std::ptrdiff_t>(u);
+    histogram->Add((rgb[red] >> kShift) << 6 | (rgb[1] >> kShift) << 3 | rgb[2 - red] >> kShift);
+  };
+  const auto facing = [&](const Point& point) {
+    const Vector3f ray = point.p - pose.p_ME;
+    return -point.normal.dot(ray) / ray.norm();
+  };
+  for (const Point& point : skin_) {
+    if (facing(point) > kFacing) add(point.p, &skin);
+  }
+  for (const Point& point : hair_) {
+    if (facing(point) > kFacing) add(point.p, &hair);
+  }
+  for (const Point& point : outline_) {
+    if (std::abs(facing(point)) >= kGrazing) continue;
+    for (const float beyond : kBeyond_m) add(point.p + beyond * point.normal, &round);
+  }
+  return kSkinShare * skin.Differs(round) + (1 - kSkinShare) * hair.Differs(round);
+}
+
+}  // namespace visavis
