@@ -11,7 +11,8 @@
 namespace visavis {
 namespace {
 
-constexpr std::size_t kMaxPrefixLength = 31;  // leaves half of a channel's 63 characters to its name
+constexpr std::size_t kMaxPrefixLength =
+    31;  // leaves half of a channel's 63 characters to its name
 
 // "" where it is set to nothing or not at all.
 std::string FromEnvironment(const char* name) {
@@ -22,8 +23,8 @@ std::string FromEnvironment(const char* name) {
 // Subscriptions are regular expressions, so nothing else may enter them.
 bool IsPrefix(const std::string& text) {
   return text.size() <= kMaxPrefixLength && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
+           return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+         });
 }
 
 }  // namespace
@@ -41,8 +42,8 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
   }
   app.add_option("--lcm-url", flags.lcm_url,
                  std::string("LCM provider [LCM_DEFAULT_URL, then ") + kDefaultLcmUrl + "]");
-  CLI::Option* prefix = app.add_option(
-      "--prefix", flags.prefix, "goes before every channel, e.g. ROBOT1_ [VISAVIS_PREFIX]");
+  CLI::Option* prefix = app.add_option("--prefix", flags.prefix,
+                                       "goes before every channel, e.g. ROBOT1_ [VISAVIS_PREFIX]");
   if (!traits.list_help.empty()) app.add_flag("--list", flags.list, traits.list_help);
   std::vector<std::string> alias_values(traits.aliases.size());
   for (std::size_t i = 0; i < traits.aliases.size(); ++i) {
