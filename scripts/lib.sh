@@ -4,6 +4,7 @@ set -euo pipefail
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$repo"
 script=scripts/$(basename "$0")
+if [[ $script == scripts/visavis-* ]]; then script=${script#scripts/}; fi # installed
 # No script ends in silence: what was not foreseen names its line.
 trap 'printf "%s: line %s: \"%s\" failed\n" "$script" "$LINENO" "$BASH_COMMAND" >&2' ERR
 
@@ -19,7 +20,7 @@ BadFlag() { Fail "$1 (--help shows the flags)" 2; }
 Say() { printf '== %s\n' "$1"; }
 
 # Prints the comment block at the script's head: what it does and its flags.
-ShowHelp() { sed -n '2,/^[^#]/{/^# shellcheck/d;s/^# \{0,1\}//p}' "$0"; }
+ShowHelp() { sed -n '2,/^[^#]/{/^# shellcheck/d;s/^# \{0,1\}//p}' "$0" | sed "1s|^scripts/[a-z-]*:|$script:|"; }
 
 # Bytes of memory that are free for us, in MB: the host's, or the container's limit if lower.
 FreeMegabytes() {

@@ -26,7 +26,7 @@ foreach(pair IN ITEMS programs:visavis lcmtypes:visavis-lcmtypes dev:visavis-dev
   string(REPLACE : ";" pair ${pair})
   list(GET pair 0 component)
   list(GET pair 1 package)
-  install(FILES ${doc}/copyright ${doc}/CHANGELOG.md.gz DESTINATION /usr/share/doc/${package}
+  install(FILES ${doc}/copyright ${doc}/CHANGELOG.md.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
     COMPONENT ${component} EXCLUDE_FROM_ALL)
   string(TOUPPER ${component} component)
   set(CPACK_DEBIAN_${component}_PACKAGE_NAME ${package})
@@ -61,11 +61,11 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA ${conffiles}
 
 set(CPACK_COMPONENT_LCMTYPES_DESCRIPTION
 "LCM messages of Visavis
-C++ headers, .lcm files, and the classes by which lcm-spy shows them.")
+C++ headers, .lcm files, and visavis-spy: lcm-spy with their classes.")
 set(CPACK_DEBIAN_LCMTYPES_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LCMTYPES_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_LCMTYPES_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_DEBIAN_LCMTYPES_PACKAGE_SUGGESTS "default-jre, liblcm-java, libjchart2d-java")
+set(CPACK_DEBIAN_LCMTYPES_PACKAGE_RECOMMENDS "default-jre, liblcm-java, libjchart2d-java")
 
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "CMake package and pkg-config file of Visavis' messages

@@ -14,11 +14,18 @@ Fail() {
 }
 
 for component in lcmtypes dev; do
-  cmake --install "$build" --component "$component" --prefix "$folder/root" >"$folder/install.log" ||
+  DESTDIR=$folder/dest cmake --install "$build" --component "$component" --prefix /prefix \
+    >"$folder/install.log" ||
     Fail "component $component cannot be installed: $(cat "$folder/install.log")"
 done
+[[ $(ls "$folder/dest") == prefix ]] || Fail "outside of the prefix: $(find "$folder/dest" -type f)"
+mv "$folder/dest/prefix" "$folder/root"
 if grep -rlF -e "$build" -e "$PWD" "$folder/root"; then Fail "the files above name the build"; fi
-[[ ! -e $folder/root/bin ]] || Fail "the types' components hold programs"
+
+help=$("$folder/root/bin/visavis-spy" --help)
+[[ $help == "visavis-spy: "* ]] || Fail "visavis-spy does not run where it is installed: $help"
+if "$folder/root/bin/visavis-spy" --player /nonexistent 2>"$folder/log"; then Fail "visavis-spy plays nothing"; fi
+grep -q '^visavis-spy: ' "$folder/log" || Fail "visavis-spy calls itself: $(cat "$folder/log")"
 
 if ! { cmake -S "$outside" -B "$folder/build" -G Ninja -DCMAKE_PREFIX_PATH="$folder/root" \
   -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wconversion -Werror" && cmake --build "$folder/build"; } \

@@ -57,6 +57,8 @@ Packed visavis -rwxr-xr-x /usr/lib/visavis/fleet-control
 Packed visavis -rwxr-xr-x /usr/lib/visavis/run-service
 Packed visavis-lcmtypes -rw-r--r-- /usr/include/visavis/head_pose_t.hpp
 Packed visavis-lcmtypes -rw-r--r-- /usr/share/visavis/lcmtypes/head_pose_t.lcm
+Packed visavis-lcmtypes -rwxr-xr-x /usr/bin/visavis-spy
+Packed visavis-lcmtypes -rw-r--r-- /usr/share/man/man1/visavis-spy.1.gz
 Packed visavis-dev -rw-r--r-- /usr/share/cmake/visavis/visavis-config.cmake
 
 # Libraries by what the programs link, commands by their names.
