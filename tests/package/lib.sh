@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 set -euo pipefail
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+trap 'rm -rf --one-file-system "$folder"' EXIT
 failures=0
 
 Skip() {
