@@ -83,7 +83,7 @@ DeployRefused "visavis-recogniser: recogniser.yaml:1: individuals: 60: unknown k
 echo 'seed: 8' >"$files/recogniser.yaml"
 # shellcheck disable=SC2016  # nothing of it must ever expand
 for line in LD_PRELOAD=/tmp/x.so 'VISAVIS_PREFIX=$(id)' 'VISAVIS_PREFIX=A B' 'export VISAVIS_PREFIX=A' \
-  ' PATH=/tmp' $'VISAVIS_PREFIX=A\\\nPATH=/tmp' $'# a note \\\nPATH=/tmp'; do
+  ' PATH=/tmp' $'VISAVIS_PREFIX=A\\\nPATH=/tmp'; do
   printf '\n%s\n' "$line" >"$files/environment"
   DeployRefused "must be LCM_DEFAULT_URL= or VISAVIS_PREFIX=" Deploy environment recogniser.yaml
 done
