@@ -30,6 +30,13 @@ sed '/^\[Service\]/,/^\[Install\]/{/^\(Type\|ExecStart\|\[\)/!d}' "$units/visavi
   >"$units/bare.service"
 (($(Exposure bare.service) > 80)) || Wrong "a unit without hardening is not told apart"
 
+# The examples keep it so, and systemd understands them.
+for example in "$root"/usr/share/doc/visavis/examples/*.conf; do
+  cp "$example" "$units/visavis@stereo-capture.service.d"
+done
+exposure=$(Exposure visavis@stereo-capture.service)
+((10#$exposure <= 30)) || Wrong "with the examples: exposure $exposure tenths, must be at most 30"
+
 # Units of the system that ours name, so that nothing is missing where they are looked for.
 cp -n /lib/systemd/system/*.target /lib/systemd/system/*.{mount,slice,socket} "$units"
 verified=$(systemd-analyze verify --man=no --recursive-errors=no --root="$root" \
