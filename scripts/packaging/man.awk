@@ -80,6 +80,16 @@ item && /^     / {
   next
 }
 /^ / {
+  # How a script is called stands before its first paragraph, without "Usage:".
+  if (!section && !described) {
+    if ($1 == name && !synopsis) {
+      print ".SH SYNOPSIS"
+      synopsis = 1
+    } else if (!verbatim) {
+      print ".SH DESCRIPTION"
+      described = 1
+    }
+  }
   if (!verbatim) print ".PP\n.RS\n.nf"
   verbatim = 1
   item = 0

@@ -45,6 +45,10 @@ transform'
 cat >"$folder/help" <<'END'
 scripts/look: looks.
 
+  visavis-look [--flag] COMMAND
+
+  begin   begins
+
 A paragraph of scripts/look that
 goes on.
 
@@ -55,7 +59,21 @@ goes on.
 END
 Equal "the page of a script" "$(Body | sed 1d)" '.SH NAME
 visavis\-look \- looks
+.SH SYNOPSIS
+.PP
+.RS
+.nf
+visavis\-look [\-\-flag] COMMAND
+.fi
+.RE
 .SH DESCRIPTION
+.PP
+.RS
+.nf
+begin   begins
+.fi
+.RE
+.PP
 A paragraph of visavis\-look that
 goes on.
 .PP
