@@ -4,6 +4,7 @@ set -euo pipefail
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$repo"
 script=scripts/$(basename "$0")
+if [[ $script == scripts/visavis-* ]]; then script=${script#scripts/}; fi # installed
 # No script ends in silence: what was not foreseen names its line.
 trap 'printf "%s: line %s: \"%s\" failed\n" "$script" "$LINENO" "$BASH_COMMAND" >&2' ERR
 
@@ -19,7 +20,7 @@ BadFlag() { Fail "$1 (--help shows the flags)" 2; }
 Say() { printf '== %s\n' "$1"; }
 
 # Prints the comment block at the script's head: what it does and its flags.
-ShowHelp() { sed -n '2,/^[^#]/{s/^# \{0,1\}//p}' "$0"; }
+ShowHelp() { sed -n '2,/^[^#]/{/^# shellcheck/d;s/^# \{0,1\}//p}' "$0" | sed "1s|^scripts/[a-z-]*:|$script:|"; }
 
 # Bytes of memory that are free for us, in MB: the host's, or the container's limit if lower.
 FreeMegabytes() {
@@ -54,7 +55,7 @@ Tick() {
   last_tenth=$tenth
 }
 
-# Runs cmake's configure and build of a preset: Build PRESET [CMAKE ARGUMENTS...].
+# Runs cmake's configure and build of a preset: [target=X] Build PRESET [CMAKE ARGUMENTS...].
 # The whole output goes to build/PRESET.log; what failed is shown.
 Build() {
   local preset=$1 jobs log line
@@ -69,7 +70,7 @@ Build() {
   fi
   Say "building with $jobs at once, the output in $log"
   last_tenth=-1
-  if ! cmake --build --preset "$preset" --parallel "$jobs" 2>&1 | tee -a "$log" |
+  if ! cmake --build --preset "$preset" --parallel "$jobs" ${target:+--target "$target"} 2>&1 | tee -a "$log" |
     while IFS= read -r line; do
       if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
         Tick "${BASH_REMATCH[1]}" "${BASH_REMATCH[2]}" built

@@ -1,6 +1,7 @@
 #include "common/service/service_flags.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
@@ -8,6 +9,25 @@
 #include "common/service/version.h"
 
 namespace visavis {
+namespace {
+
+constexpr std::size_t kMaxPrefixLength =
+    31;  // leaves half of a channel's 63 characters to its name
+
+// "" where it is set to nothing or not at all.
+std::string FromEnvironment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+// Subscriptions are regular expressions, so nothing else may enter them.
+bool IsPrefix(const std::string& text) {
+  return text.size() <= kMaxPrefixLength && std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+         });
+}
+
+}  // namespace
 
 ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv[]) {
   ServiceFlags flags;
@@ -22,7 +42,8 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
   }
   app.add_option("--lcm-url", flags.lcm_url,
                  std::string("LCM provider [LCM_DEFAULT_URL, then ") + kDefaultLcmUrl + "]");
-  app.add_option("--prefix", flags.prefix, "goes before every channel, e.g. ROBOT1_");
+  CLI::Option* prefix = app.add_option("--prefix", flags.prefix,
+                                       "goes before every channel, e.g. ROBOT1_ [VISAVIS_PREFIX]");
   if (!traits.list_help.empty()) app.add_flag("--list", flags.list, traits.list_help);
   std::vector<std::string> alias_values(traits.aliases.size());
   for (std::size_t i = 0; i < traits.aliases.size(); ++i) {
@@ -67,9 +88,15 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
       flags.overrides.push_back(traits.aliases[i].key + "=" + alias_values[i]);
     }
   }
-  if (flags.lcm_url.empty()) {
-    const char* from_environment = std::getenv("LCM_DEFAULT_URL");
-    flags.lcm_url = from_environment && *from_environment ? from_environment : kDefaultLcmUrl;
+  if (flags.lcm_url.empty()) flags.lcm_url = FromEnvironment("LCM_DEFAULT_URL");
+  if (flags.lcm_url.empty()) flags.lcm_url = kDefaultLcmUrl;
+  if (prefix->count() == 0) flags.prefix = FromEnvironment("VISAVIS_PREFIX");
+  if (!IsPrefix(flags.prefix)) {
+    std::cerr << "visavis-" << traits.name << ": "
+              << (prefix->count() > 0 ? "--prefix " : "VISAVIS_PREFIX=") << flags.prefix
+              << ": must be at most " << kMaxPrefixLength << " characters of A-Z, 0-9 and _\n";
+    flags.exit_now = true;
+    flags.exit_code = kExitBadUsage;
   }
   return flags;
 }

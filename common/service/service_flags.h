@@ -27,8 +27,8 @@ struct ServiceTraits {
 
 struct ServiceFlags {
   std::string config_file;
-  std::string lcm_url;
-  std::string prefix;
+  std::string lcm_url;  ///< of --lcm-url, else LCM_DEFAULT_URL, else ours
+  std::string prefix;   ///< of --prefix, else VISAVIS_PREFIX; at most 31 of A-Z, 0-9 and _
   std::vector<std::string> overrides;  ///< KEY=VALUE each, in the order given
   bool check_config{false};
   bool print_config{false};

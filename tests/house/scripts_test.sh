@@ -25,7 +25,7 @@ for script in $(Files 'scripts/*' | grep -E '^scripts/[a-z_-]+$'); do
 done
 
 if command -v shellcheck >/dev/null; then
-  Files 'scripts/*' 'tests/*.sh' '.ci/*' | xargs grep -lE '^#!.*bash|^# shellcheck shell=bash' |
+  Files 'scripts/*' 'tests/*.sh' '.ci/*' | xargs grep -lE '^#!.*sh\b|^# shellcheck shell=bash' |
     xargs shellcheck -x -P "$PWD" || failed=1
 fi
 exit "$failed"

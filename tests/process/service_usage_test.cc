@@ -80,6 +80,30 @@ TEST_F(ServiceUsageTest, ABadFlagGetsOneLineAndExitCode2) {
   EXPECT_THAT(Refusal({"--set", "gain"}), HasSubstr("--set gain: must read KEY=VALUE"));
 }
 
+TEST_F(ServiceUsageTest, APrefixThatIsNoPartOfAChannelsNameIsRefusedWithItsOrigin) {
+  EXPECT_THAT(Refusal({"--prefix", "robot 1"}),
+              HasSubstr("--prefix robot 1: must be at most 31 characters of A-Z, 0-9 and _"));
+  EXPECT_THAT(Refusal({"--prefix", std::string(32, 'A')}), HasSubstr("at most 31"));
+  const ProcessResult result =
+      RunProcess({VISAVIS_ECHO, "--print-config"}, {"VISAVIS_PREFIX=ROBOT.*"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("visavis-echo: VISAVIS_PREFIX=ROBOT.*: must be at most 31"));
+}
+
+TEST_F(ServiceUsageTest, APrefixOfTheEnvironmentGoesBeforeEveryChannelUnlessAFlagSaysElse) {
+  const auto count = [&](const std::string& variable, const std::vector<std::string>& flags) {
+    const std::string out = folder_ / "prefixed.lcm";
+    std::vector<std::string> args{VISAVIS_ECHO, "--replay", WriteLog(), "--record", out};
+    args.insert(args.end(), flags.begin(), flags.end());
+    EXPECT_EQ(RunProcess(args, {variable}).exit_code, 0);
+    return CountEvents(out);
+  };
+  // WriteLog's five events carry no prefix: heard without one alone.
+  EXPECT_EQ(count("VISAVIS_PREFIX=", {}), 5 + 5 + 1);
+  EXPECT_EQ(count("VISAVIS_PREFIX=ROBOT1_", {"--prefix", ""}), 5 + 5 + 1);
+  EXPECT_LT(count("VISAVIS_PREFIX=ROBOT1_", {}), 5 + 5);
+}
+
 TEST_F(ServiceUsageTest, ABadConfigurationGetsOneLineWithPlaceKeyValueAndRule) {
   const std::string bad = Write("bad.yaml", "input: IN\ngain: 0\n");
   EXPECT_THAT(Refusal({"--config", bad}), HasSubstr("bad.yaml:2: gain: 0: must be 1 to 100"));
