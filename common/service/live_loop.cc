@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/bus/channels.h"
+#include "common/service/clock_sync.h"
 #include "common/service/guard.h"
 
 namespace visavis {
@@ -23,6 +24,12 @@ std::string DescribeSmallBuffer(const ReceiveBuffer& buffer) {
          std::to_string(buffer.asked_bytes) +
          " were asked, raw images will be lost: 'sudo sysctl -w net.core.rmem_max=" +
          std::to_string(buffer.asked_bytes) + "' and restart";
+}
+
+// How far off the host's clock may be at most; where it is not synchronised nobody knows.
+void TellClock(StatusReporter* status) {
+  const ClockSync sync = ReadClockSync();
+  if (sync.synchronised) status->SetCounter("clock_maximum_error_us", sync.maximum_error_us);
 }
 
 // Microseconds until the earlier of the two, at least 0.
@@ -46,6 +53,7 @@ void RunLive(Service* service, LcmBus* bus, StatusReporter* status, const Clock&
     if (now_us >= retry_us || now_us < retry_us - kRetryUs) retry_us = 0;
     if (now_us >= next_status_us) {
       status->SetCondition("receive_buffer", DescribeSmallBuffer(bus->GetReceiveBuffer()));
+      TellClock(status);
       Guard(status, clock, [&] { service->UpdateStatus(); });
       Guard(status, clock, [&] { bus->Publish(kServiceStatusChannel, status->Make(now_us)); });
       sd_notify(0, "WATCHDOG=1");

@@ -1,12 +1,13 @@
 #include "common/service/status_reporter.h"
 
 #include <sys/resource.h>
-#include <sys/timex.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "common/service/clock_sync.h"
 
 namespace visavis {
 namespace {
@@ -116,12 +117,10 @@ void StatusReporter::ReadProcess(std::int64_t now_us) {
   last_processed_ = message_.processed;
   message_.memory_mb = ResidentMegabytes();
 
-  timex time{};
-  const int state = adjtimex(&time);
-  const bool synchronised = state >= 0 && state != TIME_ERROR && !(time.status & STA_UNSYNC);
-  message_.clock_state =
-      synchronised ? service_status_t::CLOCK_SYNCHRONISED : service_status_t::CLOCK_UNSYNCHRONISED;
-  message_.clock_offset_s = synchronised ? 1e-6 * static_cast<double>(time.esterror) : std::nan("");
+  const ClockSync clock = ReadClockSync();
+  message_.clock_state = clock.synchronised ? service_status_t::CLOCK_SYNCHRONISED
+                                            : service_status_t::CLOCK_UNSYNCHRONISED;
+  message_.clock_offset_s = clock.offset_s;
 }
 
 void StatusReporter::SetLatencies() {

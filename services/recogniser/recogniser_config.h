@@ -42,6 +42,7 @@ struct RecogniserConfig {
     a->Visit("feedforward", &feedforward, OneOf({"none", "jacobian", "exact"}));
     a->Visit("ego_motion", &ego_motion, OneOf({"auto", "arm", "camera_pose", "none"}));
     a->Visit("arm_wait_ms", &arm_wait_ms, InRange(0, 1000, "ms"));
+    a->Visit("arm_clock_bound_ms", &arm_clock_bound_ms, InRange(0.0, 10000.0, "ms"));
     a->Visit("seed", &seed, InRange<std::int64_t>(0, 1'000'000'000));
     a->Visit("simd", &simd);
     a->Visit("rig_file", &rig_file);
@@ -71,7 +72,9 @@ struct RecogniserConfig {
   /// Where the camera's motion comes from. auto: the arm where the rig has one and its states come,
   /// else camera poses where they come, else none.
   std::string ego_motion{"auto"};
-  int arm_wait_ms{15};       ///< [ms] how long a pair waits for the first motion sample after it
+  int arm_wait_ms{15};  ///< [ms] how long a pair waits for the first motion sample after it
+  /// [ms] arm states whose clock says that it is off by more are not used; 0: all are
+  double arm_clock_bound_ms{5};
   std::int64_t seed{1};      ///< of all that is random
   std::string simd{"auto"};  ///< auto, or a SIMD target of this machine; the poses are the same
   std::string rig_file;      ///< rig.yaml used until a STEREO_RIG comes; empty: wait for it

@@ -54,6 +54,7 @@ RecogniserService::RecogniserService(const RecogniserConfig& config, const Servi
       timer_(&MonotonicSeconds),
       background_(!context.live),
       budget_(context.live ? config.refined.budget_ms : 0),
+      arm_clock_(config.arm_clock_bound_ms),
       ego_motion_(EgoMotion::ParseChoice(config.ego_motion)),
       feedforward_(ParseFeedforward(config.feedforward)),
       refined_head_(config.RefinedHead()),
@@ -167,6 +168,10 @@ void RecogniserService::ProcessWaitingOfOldSession(std::int64_t motion_utime_us)
 }
 
 void RecogniserService::OnArmState(const arm_state_t& message) {
+  const bool is_timed = arm_clock_.Accepts(message.clock_offset_s);
+  Complain("arm_clock", arm_clock_.complaint());
+  arm_is_unsynchronised_ = message.clock_state == arm_state_t::CLOCK_UNSYNCHRONISED;
+  if (!is_timed) return;
   ProcessWaitingOfOldSession(message.utime);
   const std::string refused = ego_motion_.AddArmState(
       message.utime, message.joint_names, message.joint_position, message.joint_velocity);
@@ -344,8 +349,18 @@ void RecogniserService::UpdateStatus() {
                                                         config_.channels.camera_pose +
                                                         ": going on without feedforward"
                                                   : "");
+  // Of this machine's own clock nobody needs to be told here: it is not another than its cameras'.
+  const bool we_are_synchronised =
+      context_.live && context_.status->clock_state() == service_status_t::CLOCK_SYNCHRONISED;
+  context_.status->SetCondition(
+      "arm_unsynchronised", we_are_synchronised && arm_is_unsynchronised_
+                                ? config_.channels.arm_state +
+                                      " comes from a machine whose clock is not synchronised: " +
+                                      "its offset is unknown, see visavis-doctor"
+                                : "");
   context_.status->SetCounter("pairs_without_motion", pairs_without_motion_);
   context_.status->SetCounter("pairs_with_extrapolated_motion", extrapolated_);
+  context_.status->SetCounter("arm_states_refused_by_clock", arm_clock_.num_refused());
   context_.status->SetCounter("pairs_with_stale_right_image", picture_watch_.num_stale_right());
   context_.status->SetCounter("pairs_with_stale_left_image", picture_watch_.num_stale_left());
   context_.status->SetCounter("pairs_with_swapped_images", swapped_pairs_);

@@ -9,6 +9,7 @@
 #include "common/service/offline_loop.h"
 #include "common/service/service.h"
 #include "common/service/service_flags.h"
+#include "services/recogniser/arm_clock.h"
 #include "services/recogniser/background_thread.h"
 #include "services/recogniser/ego_motion.h"
 #include "services/recogniser/estimator.h"
@@ -79,6 +80,8 @@ class RecogniserService final : public Service {
   FrameBudget budget_;                       // none in a replay: nothing there depends on the clock
   std::optional<stereo_rig_t> rig_message_;  // of the rig in use
   std::optional<StereoRig> rig_;
+  ArmClock arm_clock_;
+  bool arm_is_unsynchronised_{false};  // by the last arm state's own word
   EgoMotion ego_motion_;
   std::unique_ptr<FramePreparer> preparer_;
   std::unique_ptr<Estimator> estimator_;

@@ -34,13 +34,15 @@ Background::Background(const BackgroundConfig& config, std::uint64_t seed)
     : wall_z_(static_cast<float>(config.wall_z_m)),
       picture_(static_cast<std::size_t>(kStride) * (kHeight + 1)) {
   config.ValidateOrThrow();
-  RoomPainter painter(kWidth, kHeight, 1 / static_cast<double>(kPixelPerM), seed);
+  const int shrink = config.coarse ? 4 : 1, width = kWidth / shrink;
+  RoomPainter painter(width, kHeight / shrink, shrink / static_cast<double>(kPixelPerM), seed);
   painter.PaintRoom(config.skin_coloured ? config.skin : Srgb(0.74, 0.745, 0.73));
   const std::vector<std::uint32_t> painted = painter.TakePicture();
   for (int y = 0; y <= kHeight; ++y) {
-    const std::uint32_t* from = painted.data() + static_cast<std::ptrdiff_t>(y % kHeight) * kWidth;
+    const std::uint32_t* from =
+        painted.data() + static_cast<std::ptrdiff_t>(y % kHeight / shrink) * width;
     std::uint32_t* to = picture_.data() + static_cast<std::ptrdiff_t>(y) * kStride;
-    std::copy(from, from + kWidth, to);
+    for (int x = 0; x < kWidth; ++x) to[x] = from[x / shrink];
     to[kWidth] = from[0];
   }
 }

@@ -13,6 +13,7 @@ struct BackgroundConfig {
   double wall_z_m{2.2};         ///< distance of the wall from the nominal camera, 1.4 to 10
   bool skin_coloured{false};    ///< the wall itself in the colour of skin
   Srgb skin{0.80, 0.62, 0.53};  ///< that colour
+  bool coarse{false};           ///< painted at a quarter of the resolution: in no time
 
   /// @throws std::invalid_argument naming field, value and range.
   void ValidateOrThrow() const;

@@ -33,6 +33,7 @@ Figure MakeBystander(const SceneConfig& scene) {
 
 BackgroundConfig WallOf(const SceneConfig& scene) {
   BackgroundConfig config;
+  config.coarse = scene.texture_size < 512;  // as the figure, see DetailFor()
   config.wall_z_m = 1e-3 * scene.wall_z_mm;
   config.skin_coloured = scene.skin_coloured_wall;
   if (config.skin_coloured && scene.mesh_file.empty()) {

@@ -73,6 +73,7 @@ TEST(RecogniserConfigTest, BadValuesNameKeyValueAndRule) {
       {"ego_motion=gps", "ego_motion", "must be one of auto arm camera_pose none"},
       {"arm_wait_ms=-1", "arm_wait_ms", "must be 0 to 1000 ms"},
       {"arm_wait_ms=0.015", "arm_wait_ms", "whole number"},
+      {"arm_clock_bound_ms=-1", "arm_clock_bound_ms", "must be 0 to 10000 ms"},
       {"seed=-1", "seed", "must be 0 to"},
       {"simd=MMX", "simd", "must be auto or one of"},
       {"rig_file=/nowhere/rig.yaml", "rig_file", "must be a file that exists"},

@@ -122,6 +122,34 @@ TEST_F(ServiceMotionTest, WithArmWait0NoPairWaits) {
   EXPECT_TRUE(bench.Poses()[0].feedforward_extrapolated);
 }
 
+TEST_F(ServiceMotionTest, StatesOfAClockBeyondTheBoundAreNotUsedAndTheStatusSaysSo) {
+  ServiceBench bench(EasyConfig());
+  bench.SendRig(ArmRig());
+  const auto send = [&](std::int64_t t_us, double clock_offset_s) {
+    arm_state_t state = ArmAt(t_us, Slide(t_us), Turn(t_us), 0.5, -0.2);
+    state.clock_state = arm_state_t::CLOCK_SYNCHRONISED;
+    state.clock_offset_s = clock_offset_s;
+    bench.Send("ARM_STATE", state, t_us);
+  };
+  for (std::int64_t t_us = 0; t_us < 50'000; t_us += 10'000) send(t_us, 0.006);
+  bench.SendPair(35'000, TinyRig());
+  ASSERT_EQ(bench.Poses().size(), 1u);
+  EXPECT_EQ(bench.Poses()[0].feedforward_source, head_pose_t::SOURCE_MISSING);
+  service_status_t status = bench.Status();
+  EXPECT_EQ(status.state, service_status_t::STATE_DEGRADED);
+  EXPECT_THAT(status.state_text, HasSubstr("arm_state_t.clock_offset_s: 0.006: must be at most "
+                                           "0.005 (arm_clock_bound_ms)"));
+  EXPECT_EQ(CounterOf(status, "arm_states_refused_by_clock"), 5);
+
+  for (std::int64_t t_us = 50'000; t_us < 100'000; t_us += 10'000) send(t_us, 0.001);
+  bench.SendPair(85'000, TinyRig());
+  ASSERT_EQ(bench.Poses().size(), 2u);
+  EXPECT_EQ(bench.Poses()[1].feedforward_source, head_pose_t::SOURCE_ARM);
+  status = bench.Status();
+  EXPECT_EQ(status.state_text, "");
+  EXPECT_EQ(CounterOf(status, "arm_states_refused_by_clock"), 5);
+}
+
 TEST_F(ServiceMotionTest, AnArmThatNeverCameIsNotWaitedForButFlagged) {
   ServiceBench bench(EasyConfig());
   bench.SendRig(ArmRig());

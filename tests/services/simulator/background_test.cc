@@ -112,6 +112,29 @@ TEST_F(BackgroundTest, SameSeedSameRoomOtherSeedOtherRoom) {
   EXPECT_GT(differing, 3);
 }
 
+TEST_F(BackgroundTest, ACoarseWallIsTheSameRoom) {
+  BackgroundConfig config;
+  config.coarse = true;
+  const Background coarse(config, 1);
+  double coarse_error = 0, other_error = 0;  // of brightness
+  const Background other({}, 2);
+  for (float y = -0.5f; y < 0.5f; y += 0.05f) {
+    for (float x = -1; x < 1; x += 0.05f) {
+      const auto grey = [&](const Background& wall) {
+        double sum = 0;  // over 10 mm of the wall, as wide as a coarse pixel
+        for (const std::uint32_t rgb : Look(wall, {0, 0, 0}, I_, x, y, 0.00057f)) {
+          sum += (rgb & 255) + (rgb >> 8 & 255) + (rgb >> 16 & 255);
+        }
+        return sum;
+      };
+      coarse_error += std::fabs(grey(coarse) - grey(Wall()));
+      other_error += std::fabs(grey(other) - grey(Wall()));
+    }
+  }
+  EXPECT_GT(coarse_error, 0);
+  EXPECT_LT(coarse_error, 0.5 * other_error);  // books alias, shelves and pictures stay in place
+}
+
 TEST_F(BackgroundTest, RefusesAWallInTheHead) {
   BackgroundConfig config;
   config.wall_z_m = 0.8;

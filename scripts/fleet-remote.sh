@@ -1,0 +1,234 @@
+# To be sourced by scripts/fleet after fleet-system.sh: commands on many machines at once, and what
+# must hold before anything is started. Installed in /usr/lib/visavis.
+# shellcheck shell=bash
+# shellcheck disable=SC2046  # services and hosts are words: lists of them are to be split
+# shellcheck disable=SC2154  # fleet-system.sh sets them
+
+CONTROL=/usr/lib/visavis/fleet-control # root's part on each machine, see its --help
+FLEET_FOLDER=/etc/visavis/fleet        # what `deploy` put on each machine
+
+declare -A off=()       # why a host is left out
+declare -A host_name=() # what a host calls itself
+declare -A unit_property=() # [HOST SERVICE PROPERTY]
+num_faults=0
+
+# SetUpSsh: the way to the machines; scratch is a folder that ends with the script.
+SetUpSsh() {
+  local sockets=${XDG_RUNTIME_DIR:-/tmp}/visavis-fleet-$UID option
+  scratch=$(mktemp -d)
+  trap 'rm -rf "$scratch"' EXIT
+  trap 'exit 130' INT TERM
+  (umask 077 && mkdir -p "$sockets")
+  [[ -O $sockets ]] || sockets=$scratch
+  # One connection for all commands of a minute; a machine that lost its power is noticed in 4 s.
+  ssh_command=(ssh -o BatchMode=yes -o ConnectTimeout=3 -o LogLevel=ERROR
+    -o ServerAliveInterval=2 -o ServerAliveCountMax=2
+    -o ControlMaster=auto -o ControlPersist=60 -o "ControlPath=$sockets/%C")
+  for option in "${ssh_options[@]}"; do ssh_command+=(-o "$option"); done
+}
+
+# At HOST COMMAND: runs a shell's command there. ExecAt: in place of this process.
+At() { (ExecAt "$@"); }
+ExecAt() {
+  local host=$1 command=$2
+  if [[ ${address[$host]} == localhost ]]; then
+    exec sh -c "$command"
+  else
+    exec "${ssh_command[@]}" "${operator:+$operator@}${address[$host]}" "$command"
+  fi
+}
+
+# Root's part, in a command: run as root where we are not.
+Control() {
+  # shellcheck disable=SC2016  # for the shell there
+  printf 'c=%s; [ "$(id -u)" = 0 ] || c="sudo -n $c"; $c %s' "$CONTROL" "$*"
+}
+
+# OnHosts FUNCTION HOST...: runs FUNCTION HOST for all at once; HOST.out, HOST.err and HOST.code in
+# scratch hold what came of it.
+OnHosts() {
+  local function=$1 host pids=()
+  shift
+  for host in "$@"; do
+    {
+      code=0
+      "$function" "$host" </dev/null >"$scratch/$host.out" 2>"$scratch/$host.err" || code=$?
+      echo "$code" >"$scratch/$host.code"
+    } &
+    pids+=($!)
+  done
+  ((${#pids[@]} == 0)) || wait "${pids[@]}"
+}
+
+Code() { cat "$scratch/$1.code"; }
+
+# A fault that keeps everything from being started: HostFault HOST FIELD VALUE RULE.
+HostFault() {
+  printf '%s:%s: host %s: %s: "%s": %s\n' "$system_file" \
+    "${given_at[host $1]:-${given_at[$(ServicesOn "$1" | head -1)]}}" "$1" "$2" "$3" "$4" >&2
+  num_faults=$((num_faults + 1))
+}
+
+# After OnHosts: takes out the hosts that could not be reached, with a line for each, and counts
+# those that can be but let nobody in as faults.
+SortOutOff() {
+  local host reason
+  for host in "$@"; do
+    (($(Code "$host") == 255)) || continue
+    reason=$(tail -1 "$scratch/$host.err" | tr -d '\r')
+    off[$host]=$reason
+    case $reason in
+      *"resolve hostname"*)
+        HostFault "$host" address "${address[$host]}" "must be an address or a name that is known: $reason"
+        ;;
+      *"ermission denied"* | *"key verification failed"* | *"onfiguration option"*)
+        HostFault "$host" login "${operator:-$(id -un)}@${address[$host]}" \
+          "must be possible with a key, without a password: $reason"
+        ;;
+      *)
+        printf '%s:%s: host %s (%s): is off or cannot be reached: %s; left out: %s\n' "$system_file" \
+          "${given_at[host $host]:-1}" "$host" "${address[$host]}" "${reason:-no answer}" \
+          "$(List $(ServicesOn "$host"))" >&2
+        ;;
+    esac
+  done
+}
+
+# The hosts that can be reached.
+Reachable() {
+  local host
+  for host in "${hosts[@]}"; do [[ -n ${off[$host]:-} ]] || echo "$host"; done
+}
+
+# What a machine says of itself, a word and its value a line; "heard" if listen_s > 0: the services
+# that it hears on the LCM network within so many seconds.
+Inquire() {
+  local command units=("${SERVICES[@]/#/visavis@}")
+  command="echo name \$(hostname)
+    v=\$($(Control version) 2>&1) && echo version \$v || echo no-version \$v
+    systemctl show -p Id,ActiveState,SubState,MainPID,NRestarts,UnitFileState,ActiveEnterTimestamp ${units[*]} | sed 's/^/unit /'
+    cd $FLEET_FOLDER 2>/dev/null && sha256sum -- * 2>/dev/null | sed 's/^/file /'"
+  if [[ ${listen_s:-0} != 0 ]]; then
+    command="exec 3>&1
+      { h=\$(visavis-probe listen --lcm-url '$lcm_url' --prefix '$prefix' --seconds $listen_s 2>&1) &&
+        echo \"\$h\" | sed -n 's/./heard &/p' || echo deaf \$h; } >&3 & $command
+      wait"
+  fi
+  At "$1" "$command"
+}
+
+# Answer HOST WORD: the values that Inquire got for a word.
+Answer() { sed -n "s/^$2 //p" "$scratch/$1.out"; }
+
+# UnitOf HOST SERVICE PROPERTY: of systemctl show; sets value. Without a process, as it is much used.
+UnitOf() { value=${unit_property[$1 $2 $3]:-}; }
+ReadUnits() {
+  local host=$1 line service key
+  local -A block=()
+  while IFS= read -r line; do
+    if [[ -n $line ]]; then
+      block[${line%%=*}]=${line#*=}
+      continue
+    fi
+    service=${block[Id]:-}
+    service=${service#visavis@}
+    for key in "${!block[@]}"; do unit_property[$host ${service%.service} $key]=${block[$key]}; done
+    block=()
+  done < <(Answer "$host" unit; echo)
+}
+
+# Asks all hosts, then sorts out those that are off.
+InquireAll() {
+  OnHosts Inquire "${hosts[@]}"
+  SortOutOff "${hosts[@]}"
+  local host
+  for host in $(Reachable); do
+    host_name[$host]=$(Answer "$host" name)
+    ReadUnits "$host"
+  done
+}
+
+# The package is installed everywhere, the same, and this user may control it.
+CheckVersions() {
+  local host version first='' first_host=''
+  for host in $(Reachable); do
+    version=$(Answer "$host" version)
+    if [[ -z $version ]]; then
+      HostFault "$host" package "$(Answer "$host" no-version)" \
+        "must be installed, and ${operator:-$(id -un)} a member of visavis-operators"
+    elif [[ -n $first && $version != "$first" ]]; then
+      HostFault "$host" version "$version" "must be $first as on $first_host: install the same package on both"
+    else
+      first=$version first_host=$host
+    fi
+  done
+}
+
+# What is deployed on each host is what the system file says. After SumConfigurations.
+CheckDeployed() {
+  local host
+  for host in $(Reachable); do
+    if [[ -n $(comm -23 "$scratch/$host.sums" <(Answer "$host" file | sort)) ]]; then
+      HostFault "$host" "$FLEET_FOLDER" "" "must be what the system file says: visavis-fleet deploy"
+    fi
+  done
+}
+
+# Nothing that the system file does not place on a machine runs there.
+CheckPlaces() {
+  local host service
+  for host in $(Reachable); do
+    for service in "${SERVICES[@]}"; do
+      UnitOf "$host" "$service" ActiveState
+      [[ $value =~ ^(active|activating)$ ]] || continue
+      IsOneOf "$service" $(ServicesOn "$host") ||
+        HostFault "$host" "runs" "$service" "must not run there by the system file: visavis-fleet stop"
+    done
+  done
+}
+
+# Nobody else uses our group, port and prefix. After an Inquire that listened.
+CheckNetwork() {
+  local host service where pid version word known=("${!off[@]}") # those go by the name in the file
+  for host in $(Reachable); do
+    known+=("${host_name[$host]}")
+    word=$(Answer "$host" deaf | head -1)
+    [[ -z $word ]] || HostFault "$host" lcm_url "$lcm_url" "must be a network that it can open: $word"
+  done
+  while read -r service where pid version _; do
+    [[ -n $service ]] || continue
+    service=${service//_/-}
+    if ! IsOneOf "$where" "${known[@]}"; then
+      printf '%s:%s: lcm_url: "%s": must be of this robot alone, but %s of host %s (pid %s, version %s) is heard on %sSERVICE_STATUS: take another group, port or prefix\n' \
+        "$system_file" "${given_at[lcm_url]:-1}" "$lcm_url" "$service" "$where" "$pid" "$version" "$prefix" >&2
+      num_faults=$((num_faults + 1))
+      continue
+    fi
+    for host in $(Reachable); do
+      [[ ${host_name[$host]} == "$where" ]] || continue
+      UnitOf "$host" "$service" MainPID
+      [[ $value == "$pid" ]] ||
+        HostFault "$host" "$service" "pid $pid" "must run as visavis@$service alone: end that process"
+    done
+  done < <(for host in $(Reachable); do Answer "$host" heard; done | sort -u)
+}
+
+SumConfigurations() {
+  local host
+  for host in "${hosts[@]}"; do
+    MakeConfiguration "$host"
+    (cd "$scratch/$host" && sha256sum -- * | sort) >"$scratch/$host.sums"
+  done
+}
+
+# MakeConfiguration HOST: the files that `deploy` brings there, as a folder in scratch.
+MakeConfiguration() {
+  local host=$1 service file
+  rm -rf "${scratch:?}/$host"
+  mkdir -p "$scratch/$host"
+  printf 'LCM_DEFAULT_URL=%s\nVISAVIS_PREFIX=%s\n' "$lcm_url" "$prefix" >"$scratch/$host/environment"
+  for service in $(ServicesOn "$host"); do
+    file=$(FileOf "$service" "$host")
+    [[ -z $file ]] || cp "$file" "$scratch/$host/$service.yaml"
+  done
+}

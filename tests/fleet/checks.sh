@@ -1,0 +1,131 @@
+# To be sourced by fleet_test.sh: what is tried at the seat. Each prints what went wrong and fails.
+# shellcheck shell=bash
+# shellcheck disable=SC2016,SC2154  # robot, repo, build: fleet_test.sh sets them
+
+# Lines of all machines, in the order of their times.
+LogsOfAll() {
+  local words
+  words=$(Operate "visavis-fleet logs --lines 20") || return 1
+  printf '%s\n' "$words"
+  [[ $(awk '{print $2}' <<<"$words" | sort -u | paste -sd ' ') == "camera compute storage" ]] &&
+    sort -c -s -k1,1 <<<"$words"
+}
+
+# Following ends with the signal that ends it, and leaves nobody reading.
+FollowsLogs() {
+  local words
+  words=$(Operate "timeout 3 visavis-fleet logs --follow --lines 2") && return 1
+  printf '%s\n' "$words"
+  [[ $(awk '{print $2}' <<<"$words" | sort -u | paste -sd ' ') == "camera compute storage" ]] &&
+    for machine in camera compute storage; do
+      WaitFor 5 "end of journalctl on $machine" Fails LabRun "$machine" pgrep -x journalctl
+    done
+}
+
+# The newest log that is not too short holds pictures, and the recogniser tracks in it.
+PlaysBack() {
+  LabRun storage bash -ec '
+    log=$(ls -S /var/lib/visavis/logs/fleet-*.lcm | head -1)
+    visavis-log info --prefix LAB_ "$log"
+    visavis-recogniser --prefix LAB_ --replay "$log" --record /tmp/out.lcm
+    visavis-evaluate --prefix LAB_ /tmp/out.lcm' >"$LAB/playback" 2>&1 || { cat "$LAB/playback"; return 1; }
+  cat "$LAB/playback"
+  awk '/TRACKING, .* SEARCHING/ {for (i = 2; i <= NF; ++i) if ($i ~ /^TRACKING/) tracking = $(i - 1)}
+    END {exit !(tracking > 500)}' "$LAB/playback"
+}
+
+# Refused REGEX [COMMAND]: `start`, or another command, is refused with one line that fits.
+Refused() {
+  local words
+  if words=$(Operate "visavis-fleet ${2:-start}" 2>&1); then return 1; fi
+  printf '%s\n' "$words"
+  [[ $(wc -l <<<"$words") == 2 && $(tail -1 <<<"$words") == *"nothing was changed"* ]] &&
+    grep -qE -- "$1" <<<"$words"
+}
+
+WrongVersion() {
+  local code=0
+  LabRun compute sh -c 'cp /usr/lib/visavis/version /run/version; echo 9.9 >/usr/lib/visavis/version'
+  Refused '^system.conf:[0-9]+: host compute: version: "9.9": must be .* as on camera' || code=1
+  LabRun compute cp /run/version /usr/lib/visavis/version
+  return "$code"
+}
+
+# A process on another machine of the network that uses our group, port and prefix.
+OtherRobot() {
+  local code=0 pid url
+  url=$(awk '$1 == "lcm_url" {print $2}' "$robot/system.conf")
+  "$build/bin/visavis-arm-state" --lcm-url "$url" --prefix LAB_ >"$LAB/other.out" 2>&1 &
+  pid=$!
+  WaitFor 5 "another robot" grep -q running "$LAB/other.out" || code=1
+  Refused '^system.conf:2: lcm_url: "udpm.*": must be of this robot alone, but arm-state of host' || code=1
+  ! Operate "visavis-fleet status | grep -w active" || code=1
+  kill "$pid"
+  wait "$pid" || true
+  return "$code"
+}
+
+NotDeployed() {
+  local code=0
+  echo 'arm_wait_ms: 14' >>"$robot/recogniser.yaml"
+  Refused '^system.conf:[0-9]+: host compute: /etc/visavis/fleet: .*visavis-fleet deploy' || code=1
+  return "$code"
+}
+
+# Nothing fails but the clocks, which are this computer's and may be kept by nobody.
+HealthyButClocks() {
+  local words
+  words=$(Operate "visavis-fleet doctor" 2>&1) || true
+  printf '%s\n' "$words"
+  [[ $(grep -c ' messages  *ok ' <<<"$words") == 6 && $(grep -c ' version  *ok ' <<<"$words") == 3 &&
+    $(grep -c ' clock offset  *ok ' <<<"$words") == 2 ]] &&
+    ! grep ' FAIL ' <<<"$words" | grep -v ' clock  *FAIL '
+}
+
+# Multicast of compute leaves by lo: it is not heard, and the doctor says why.
+MendsRoute() {
+  local words mend
+  LabRun compute ip route replace 224.0.0.0/4 dev lo
+  words=$(Operate "visavis-fleet doctor" 2>&1) && return 1
+  printf '%s\n' "$words"
+  mend=$(grep -A3 'compute  *route  *FAIL' <<<"$words" | sed -n 's/^    mend: sudo //p' | head -1)
+  [[ -n $mend ]] && grep -q 'storage  *messages  *FAIL hears nothing of compute' <<<"$words" || return 1
+  LabRun compute ip route del 224.0.0.0/4
+  LabRun compute bash -c "$mend"
+  Operate "visavis-fleet doctor 2>&1 | grep -E 'storage +messages +ok +of compute'"
+}
+
+# A name that nobody knows, and a user who may not log in: neither is a machine that is off.
+BadHosts() {
+  local code=0
+  sed 's/10.77.0.1$/nowhere.invalid/' "$robot/system.conf" >"$robot/nowhere.conf"
+  Refused '^nowhere.conf:5: host camera: address: "nowhere.invalid": must be an address or a name' \
+    "--system nowhere.conf start" || code=1
+  sed '/10.77.0.[23]$/d; s/compute\|storage/camera/; $auser nobody' "$robot/system.conf" >"$robot/nobody.conf"
+  Refused '^nobody.conf:5: host camera: login: "nobody@10.77.0.1": must be possible with a key' \
+    "--system nobody.conf start" || code=1
+  return "$code"
+}
+
+# A configuration that its service refuses is deployed nowhere.
+BadConfiguration() {
+  local code=0 before
+  before=$(LabRun camera readlink /etc/visavis/fleet)
+  cp "$robot/recogniser.yaml" "$LAB/recogniser.yaml"
+  echo 'arm_wait_ms: -1' >>"$robot/recogniser.yaml"
+  Refused '^compute: visavis-recogniser: ./recogniser.yaml:2: arm_wait_ms: -1: must be 0 to 1000 ms' deploy || code=1
+  [[ $(LabRun camera readlink /etc/visavis/fleet) == "$before" ]] || code=1
+  cp "$LAB/recogniser.yaml" "$robot/recogniser.yaml"
+  return "$code"
+}
+
+# The same commands for this machine alone, without ssh.
+OneMachine() {
+  printf '%s\n' "prefix ONE_" "logger localhost logger.yaml" "recogniser localhost" >"$robot/one.conf"
+  local fleet="visavis-fleet --system one.conf"
+  Operate "$fleet deploy && $fleet start && $fleet restart recogniser && $fleet status && $fleet logs logger" &&
+    Operate "$fleet enable && $fleet disable recogniser && $fleet status" >"$LAB/status" &&
+    grep -qE '^logger .* active .* enabled ' "$LAB/status" &&
+    grep -qE '^recogniser .* active .* disabled ' "$LAB/status" &&
+    Operate "$fleet stop && ! $fleet status"
+}
