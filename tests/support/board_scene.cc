@@ -47,6 +47,15 @@ StereoRig SkewedRig() {
   return rig;
 }
 
+BoardSpec SmallBoard(int columns, int rows) {
+  BoardSpec spec;
+  spec.columns = columns;
+  spec.rows = rows;
+  spec.square_mm = 60;
+  spec.marker_mm = 45;
+  return spec;
+}
+
 BoardScene MakeBoardScene(const BoardSpec& spec, int num_views, std::uint64_t seed) {
   Random random(seed);
   BoardScene scene{Board(spec), SkewedRig(), {}, {}, {}, {}};

@@ -20,6 +20,9 @@ struct BoardScene {
 /// quite agree.
 StereoRig SkewedRig();
 
+/// A board of few squares of 60 mm, quickly seen.
+BoardSpec SmallBoard(int columns, int rows);
+
 /// @p num_views postures at which the board about fills the right image: turned to all sides by up
 /// to 40 deg, nearer and farther, up to a seventh of the picture off its middle.
 BoardScene MakeBoardScene(const BoardSpec& spec, int num_views, std::uint64_t seed);

@@ -14,7 +14,8 @@
 namespace visavis {
 
 /// Learns the shape, the looks and the frame of a head while it is tracked: the views of the first
-/// seconds, one a direction, are bundled beside the frames, anew as soon as half as many have come.
+/// seconds, one a direction, are bundled beside the frames, anew as soon as half as many have come,
+/// or fewer in 150 frames.
 /// A head learned is there so many frames after its learning was begun, not before: a log played
 /// again gives the same.
 class HeadLearner {

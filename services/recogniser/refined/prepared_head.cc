@@ -15,9 +15,13 @@ FacedHead::FacedHead(const RefinerConfig& config, const HeadGeometry& geometry)
       refiner(config, head.surface, mesh, face) {}
 
 PreparedHead::PreparedHead(const RefinerConfig& config, const HeadGeometry& geometry)
+    : PreparedHead(config, geometry, MeshOf(geometry.surface, kCoarseMeshLevel)) {}
+
+PreparedHead::PreparedHead(const RefinerConfig& config, const HeadGeometry& geometry,
+                           const HeadMesh& coarse_mesh)
     : FacedHead(config, geometry),
-      coarse_fitness(MeshOf(head.surface, kCoarseMeshLevel), face, 2),
-      fitness(MeshOf(head.surface, kCoarseMeshLevel), face, 1),
-      contrast(MeshOf(head.surface, kCoarseMeshLevel)) {}
+      coarse_fitness(coarse_mesh, face, 2),
+      fitness(coarse_mesh, face, 1),
+      contrast(coarse_mesh) {}
 
 }  // namespace visavis

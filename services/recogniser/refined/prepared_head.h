@@ -25,6 +25,9 @@ struct PreparedHead : FacedHead {
 
   const MeshFitness coarse_fitness, fitness;
   const ColorContrast contrast;
+
+ private:
+  PreparedHead(const RefinerConfig& config, const HeadGeometry& head, const HeadMesh& coarse_mesh);
 };
 
 }  // namespace visavis

@@ -11,8 +11,7 @@ namespace {
 
 constexpr double kLeastGlance = -0.5;  ///< below: not worth an evaluation
 constexpr double kHopeless = -3;       ///< fitness then
-constexpr double kContrastWeight =
-    2;  ///< of the colours' contrast, 0 to 1, in the search's fitness
+constexpr double kContrastWeight = 2;  ///< in the search's fitness, of 0 to 1
 constexpr double kRejected_m = 0.05, kRejectedDepth_m = 0.15;
 constexpr std::size_t kMostRejected = 12;
 constexpr int kForgiveEvery = 4;  ///< searches in a row
@@ -264,15 +263,13 @@ RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candida
   const RigidTransform X = candidate.refined.X_CM;
   if (!X.matrix().allFinite()) return candidate;
   BuildMaps(&X);
-  Candidate best = candidate, turned;
+  std::optional<Candidate> turned;
   const auto consider = [&](const Eigen::Matrix3d& R_CM) {
     const Candidate other = RefineFrom(MakeTransform(R_CM, X.translation()), nullptr,
                                        kFirstIterations, kTurnedReach_px);
-    const bool is_first = !turned.refined.X_CM.matrix().allFinite();
-    if (IsPlausible(other.refined.X_CM) && (is_first || other.merit() > turned.merit()))
+    if (IsPlausible(other.refined.X_CM) && (!turned || other.merit() > turned->merit()))
       turned = other;
   };
-  turned.refined.X_CM.matrix().setConstant(NAN);
   for (const double turn : kTurns_rad) {
     consider(X.linear() * ExpRotation({turn, 0, 0}));
     consider(X.linear() * ExpRotation({0, turn, 0}));
@@ -280,11 +277,11 @@ RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candida
   const Eigen::Vector3d angles = AnglesFromRotation(X.linear());
   consider(RotationFromAngles({angles[0], -angles[1], angles[2]}));
   consider(RotationFromAngles({angles[0], angles[1], -angles[2]}));
-  if (!turned.refined.X_CM.matrix().allFinite()) return best;
-  turned = RefineFrom(turned.refined.X_CM, nullptr, settings_.refined.search_iterations,
+  if (!turned) return candidate;
+  turned = RefineFrom(turned->refined.X_CM, nullptr, settings_.refined.search_iterations,
                       kTurnedReach_px);
-  if (IsPlausible(turned.refined.X_CM) && turned.merit() > best.merit()) best = turned;
-  return best;
+  const bool is_better = IsPlausible(turned->refined.X_CM) && turned->merit() > candidate.merit();
+  return is_better ? *turned : candidate;
 }
 
 RefinedEstimator::Candidate RefinedEstimator::Verify(const Candidate& candidate) {

@@ -5,7 +5,7 @@
 
 #include "common/config/config_reader.h"
 #include "common/config/config_writer.h"
-#include "tests/support/environment.h"
+#include "tests/support/shipped_config.h"
 
 namespace visavis {
 namespace {
@@ -13,11 +13,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(ArmStateConfigTest, ShippedFileEqualsDefaults) {
-  const std::string shipped =
-      Environment("VISAVIS_SOURCE_DIR") + "/services/arm_state/arm_state.yaml";
-  EXPECT_EQ(DumpConfig(LoadConfig<ArmStateConfig>(shipped)), DumpConfig(ArmStateConfig{}));
-  EXPECT_EQ(ConfigSource(shipped, {}).root().size(), 15u);  // every key is explained there
+TEST(ArmStateConfigTest, TheShippedFileHoldsEveryDefault) {
+  ExpectShippedFileHoldsEveryDefault<ArmStateConfig>("services/arm_state/arm_state.yaml");
 }
 
 TEST(ArmStateConfigTest, BadValuesAreNamed) {

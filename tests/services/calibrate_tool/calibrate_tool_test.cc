@@ -43,21 +43,12 @@ std::string Refusal(const std::vector<std::string>& args) {
   return result.err;
 }
 
-BoardSpec Spec() {
-  BoardSpec spec;
-  spec.columns = 9;
-  spec.rows = 7;
-  spec.square_mm = 60;
-  spec.marker_mm = 45;
-  return spec;
-}
-
 /// A log of 14 postures, rendered once for all tests, and what else the tool needs.
 class CalibrateToolTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
-    scene_ = new BoardScene(MakeBoardScene(Spec(), 14, 2));
+    scene_ = new BoardScene(MakeBoardScene(SmallBoard(9, 7), 14, 2));
     WriteBoardLog(*scene_, log());
     RigDescription nominal;
     nominal.rig = scene_->rig;

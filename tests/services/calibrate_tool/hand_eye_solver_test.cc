@@ -13,15 +13,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-BoardSpec Spec() {
-  BoardSpec spec;
-  spec.columns = 8;
-  spec.rows = 6;
-  spec.square_mm = 60;
-  spec.marker_mm = 45;
-  return spec;
-}
-
 double AngleRad(const RigidTransform& a, const RigidTransform& b) {
   return LogRotation(a.linear().transpose() * b.linear()).norm();
 }
@@ -40,7 +31,7 @@ void Shake(std::vector<ArmView>* views, double sigma_m, double sigma_rad, std::u
 }
 
 TEST(HandEyeSolverTest, WithoutNoiseItFindsHandAndBoardExactly) {
-  const BoardScene scene = MakeBoardScene(Spec(), 10, 1);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 10, 1);
   const auto found = CalibrateHandEye(scene.board, scene.rig, SeeAll(scene, 0, 1), {});
   EXPECT_LT((found.X_HC.translation() - scene.X_HC.translation()).norm(), 1e-7);
   EXPECT_LT(AngleRad(found.X_HC, scene.X_HC), 1e-6);
@@ -56,7 +47,7 @@ TEST(HandEyeSolverTest, ItsStandardDeviationsAreThoseOfItsErrors) {
   const int num_trials = 15;
   for (int trial = 0; trial < num_trials; ++trial) {
     const auto seed = static_cast<std::uint64_t>(trial);
-    const BoardScene scene = MakeBoardScene(Spec(), 8, 200 + seed);
+    const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 8, 200 + seed);
     auto views = SeeAll(scene, 0.2, seed);
     Shake(&views, settings.arm_sigma_m, settings.arm_sigma_rad, 300 + seed);
     const auto found = CalibrateHandEye(scene.board, scene.rig, views, settings);
@@ -73,7 +64,7 @@ TEST(HandEyeSolverTest, ItsStandardDeviationsAreThoseOfItsErrors) {
 
 // One number of the rig is off by its standard deviation; the answer is off by what is told.
 TEST(HandEyeSolverTest, TheRigsOwnUncertaintyIsInItsStandardDeviations) {
-  const BoardScene scene = MakeBoardScene(Spec(), 10, 5);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 10, 5);
   const auto views = SeeAll(scene, 0, 5);
   StereoRig off = scene.rig;
   off.right.cx += 0.5;
@@ -94,7 +85,7 @@ TEST(HandEyeSolverTest, TheRigsOwnUncertaintyIsInItsStandardDeviations) {
 }
 
 TEST(HandEyeSolverTest, AViewWhoseArmWasWrongStandsOut) {
-  const BoardScene scene = MakeBoardScene(Spec(), 12, 2);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 12, 2);
   auto views = SeeAll(scene, 0.1, 2);
   views[4].X_BH.translation().x() += 0.02;
   const auto found = CalibrateHandEye(scene.board, scene.rig, views, {});
@@ -106,7 +97,7 @@ TEST(HandEyeSolverTest, AViewWhoseArmWasWrongStandsOut) {
 }
 
 TEST(HandEyeSolverTest, AViewThatShowsTooLittleIsLeftOut) {
-  const BoardScene scene = MakeBoardScene(Spec(), 8, 3);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 8, 3);
   auto views = SeeAll(scene, 0, 3);
   views[1].view.right = {};  // the left eye alone serves
   views[2].view.right = views[2].view.left = {};
@@ -117,7 +108,7 @@ TEST(HandEyeSolverTest, AViewThatShowsTooLittleIsLeftOut) {
 }
 
 TEST(HandEyeSolverTest, HandsThatTurnAboutOneAxisOnlyAreRefused) {
-  BoardScene scene = MakeBoardScene(Spec(), 8, 4);
+  BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 8, 4);
   auto views = SeeAll(scene, 0, 4);
   for (std::size_t i = 0; i < views.size(); ++i) {
     views[i].X_BH = MakeTransform(ExpRotation({0, 0, 0.2 * static_cast<double>(i)}),

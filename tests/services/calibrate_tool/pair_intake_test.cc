@@ -13,17 +13,8 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 using Verdict = ViewCollector::Verdict;
 
-BoardSpec Spec() {
-  BoardSpec spec;
-  spec.columns = 8;
-  spec.rows = 6;
-  spec.square_mm = 60;
-  spec.marker_mm = 45;
-  return spec;
-}
-
 TEST(PairIntakeTest, RenderedPairsAreJudgedByWhatTheyShow) {
-  const BoardScene scene = MakeBoardScene(Spec(), 2, 1);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 2, 1);
   const PairRenderer renderer(scene);
   Random random(1);
   PairIntake intake(scene.board, CollectorSettings{});
@@ -43,7 +34,7 @@ TEST(PairIntakeTest, RenderedPairsAreJudgedByWhatTheyShow) {
 }
 
 TEST(PairIntakeTest, EyesAreFoundByTypeAndNotByOrder) {
-  const BoardScene scene = MakeBoardScene(Spec(), 1, 1);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 1, 1);
   Random random(1);
   images_t pair = PairRenderer(scene).Render(scene.X_CT[0], 0, &random);
   std::swap(pair.images[0], pair.images[1]);
@@ -56,7 +47,7 @@ TEST(PairIntakeTest, EyesAreFoundByTypeAndNotByOrder) {
 }
 
 TEST(PairIntakeTest, PairsWithOneEyeOrAnotherSizeAreRefused) {
-  const BoardScene scene = MakeBoardScene(Spec(), 1, 3);
+  const BoardScene scene = MakeBoardScene(SmallBoard(8, 6), 1, 3);
   Random random(1);
   const images_t pair = PairRenderer(scene).Render(scene.X_CT[0], 0, &random);
   PairIntake intake(scene.board, CollectorSettings{});

@@ -13,15 +13,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-BoardSpec Spec() {
-  BoardSpec spec;
-  spec.columns = 9;
-  spec.rows = 7;
-  spec.square_mm = 60;
-  spec.marker_mm = 45;
-  return spec;
-}
-
 StereoSettings Settings() {
   StereoSettings settings;
   settings.width = settings.left_width = 640;
@@ -40,7 +31,7 @@ double AngleRad(const RigidTransform& a, const RigidTransform& b) {
 }
 
 TEST(StereoSolverTest, WithoutNoiseItFindsTheRigExactly) {
-  const BoardScene scene = MakeBoardScene(Spec(), 15, 1);
+  const BoardScene scene = MakeBoardScene(SmallBoard(9, 7), 15, 1);
   const auto found = CalibrateStereo(scene.board, Views(scene, 0, 1), Settings());
   EXPECT_NEAR(found.rig.right.fx, scene.rig.right.fx, 1e-4);
   EXPECT_NEAR(found.rig.right.cy, scene.rig.right.cy, 1e-4);
@@ -61,7 +52,7 @@ TEST(StereoSolverTest, ItsStandardDeviationsAreThoseOfItsErrors) {
   const int num_trials = 12;
   for (int trial = 0; trial < num_trials; ++trial) {
     const auto seed = static_cast<std::uint64_t>(trial);
-    const BoardScene scene = MakeBoardScene(Spec(), 12, 100 + seed);
+    const BoardScene scene = MakeBoardScene(SmallBoard(9, 7), 12, 100 + seed);
     const auto found = CalibrateStereo(scene.board, Views(scene, 0.2, seed), Settings());
     EXPECT_NEAR(found.rms_px, 0.2 * std::sqrt(2), 0.02);
     const Eigen::Vector3d p = found.rig.X_CL.translation() - scene.rig.X_CL.translation();
@@ -79,7 +70,7 @@ TEST(StereoSolverTest, ItsStandardDeviationsAreThoseOfItsErrors) {
 }
 
 TEST(StereoSolverTest, OneBadViewAndWrongCornersDoLittleHarm) {
-  const BoardScene scene = MakeBoardScene(Spec(), 20, 3);
+  const BoardScene scene = MakeBoardScene(SmallBoard(9, 7), 20, 3);
   std::vector<StereoView> views = Views(scene, 0.1, 3);
   const auto clean = CalibrateStereo(scene.board, views, Settings());
   for (std::size_t i = 0; i < views.size(); i += 2) views[i].right.pixels[3].x() += 25;
@@ -90,7 +81,7 @@ TEST(StereoSolverTest, OneBadViewAndWrongCornersDoLittleHarm) {
 }
 
 TEST(StereoSolverTest, CoefficientsThatAreFixedStay0) {
-  const BoardScene scene = MakeBoardScene(Spec(), 10, 4);
+  const BoardScene scene = MakeBoardScene(SmallBoard(9, 7), 10, 4);
   StereoSettings settings = Settings();
   settings.distortion = DistortionModel::kRadial;
   const auto found = CalibrateStereo(scene.board, Views(scene, 0.1, 4), settings);
@@ -107,7 +98,7 @@ TEST(StereoSolverTest, CoefficientsThatAreFixedStay0) {
 }
 
 TEST(StereoSolverTest, AViewOfOneEyeServesThatEye) {
-  const BoardScene scene = MakeBoardScene(Spec(), 14, 5);
+  const BoardScene scene = MakeBoardScene(SmallBoard(9, 7), 14, 5);
   std::vector<StereoView> views = Views(scene, 0, 5);
   views[2].right = {};
   views[3].left = {};
@@ -117,7 +108,7 @@ TEST(StereoSolverTest, AViewOfOneEyeServesThatEye) {
 }
 
 TEST(StereoSolverTest, ViewsThatDoNotDetermineItAreRefused) {
-  BoardScene scene = MakeBoardScene(Spec(), 8, 6);
+  BoardScene scene = MakeBoardScene(SmallBoard(9, 7), 8, 6);
   std::vector<StereoView> views = Views(scene, 0.1, 6);
   std::vector<StereoView> apart = views;
   for (std::size_t i = 0; i < apart.size(); ++i) (i % 2 ? apart[i].right : apart[i].left) = {};

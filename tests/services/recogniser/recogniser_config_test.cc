@@ -12,6 +12,7 @@
 #include "common/config/config_reader.h"
 #include "common/config/config_writer.h"
 #include "services/recogniser/fitness_kernel.h"
+#include "tests/support/shipped_config.h"
 #include "tests/support/stereo_scene.h"
 
 namespace visavis {
@@ -19,11 +20,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-std::string ShippedFile() {
-  const char* source = std::getenv("VISAVIS_SOURCE_DIR");
-  return std::string(source ? source : ".") + "/services/recogniser/recogniser.yaml";
-}
 
 // Each dotted key with its value as text; a list as its elements with commas.
 void Flatten(const YAML::Node& node, const std::string& prefix,
@@ -49,8 +45,9 @@ std::map<std::string, std::string> Keys(const RecogniserConfig& config) {
 
 TEST(RecogniserConfigTest, TheShippedFileHoldsEveryDefaultKeyByKey) {
   std::map<std::string, std::string> in_file;
-  Flatten(YAML::LoadFile(ShippedFile()), "", &in_file);
-  const auto loaded = Keys(LoadConfig<RecogniserConfig>(ShippedFile()));
+  Flatten(YAML::LoadFile(ShippedFile("services/recogniser/recogniser.yaml")), "", &in_file);
+  const auto loaded =
+      Keys(LoadConfig<RecogniserConfig>(ShippedFile("services/recogniser/recogniser.yaml")));
   const auto defaults = Keys(RecogniserConfig{});
   EXPECT_GT(defaults.size(), 60u);
   for (const auto& [key, value] : defaults) {

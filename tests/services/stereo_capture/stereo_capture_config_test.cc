@@ -8,6 +8,7 @@
 #include "common/config/config_reader.h"
 #include "common/config/config_writer.h"
 #include "tests/support/config_refusal.h"
+#include "tests/support/shipped_config.h"
 
 namespace visavis {
 namespace {
@@ -16,24 +17,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-std::string ShippedFile() {
-  const char* source = std::getenv("VISAVIS_SOURCE_DIR");
-  return std::string(source ? source : ".") + "/services/stereo_capture/stereo_capture.yaml";
-}
-
-void ExpectSameKeys(const YAML::Node& expected, const YAML::Node& actual,
-                    const std::string& prefix) {
-  for (const auto& entry : expected) {
-    const auto key = entry.first.as<std::string>();
-    ASSERT_TRUE(actual[key].IsDefined()) << prefix << key;
-    if (entry.second.IsMap()) ExpectSameKeys(entry.second, actual[key], prefix + key + ".");
-  }
-}
-
 TEST(StereoCaptureConfigTest, TheShippedFileHoldsEveryDefault) {
-  EXPECT_EQ(DumpConfig(LoadConfig<StereoCaptureConfig>(ShippedFile())),
-            DumpConfig(StereoCaptureConfig{}));
-  ExpectSameKeys(YAML::Load(DumpConfig(StereoCaptureConfig{})), YAML::LoadFile(ShippedFile()), "");
+  ExpectShippedFileHoldsEveryDefault<StereoCaptureConfig>(
+      "services/stereo_capture/stereo_capture.yaml");
 }
 
 TEST(StereoCaptureConfigTest, FeaturesAreReadByNameFromFileAndFlag) {

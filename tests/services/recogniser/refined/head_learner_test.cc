@@ -88,6 +88,16 @@ TEST_F(HeadLearnerTest, WhatIsKnownFromAllSidesIsNotLearnedAgain) {
   EXPECT_FALSE(Learn(&learner, &frames).head);
 }
 
+TEST_F(HeadLearnerTest, OneSideMoreIsLearnedWhenItHasWaitedLong) {
+  HeadLearner learner = Learner(nullptr, 20);
+  int frames;
+  ASSERT_TRUE(Learn(&learner, &frames).head);
+  for (frames = 1; frames < 300 && !Show(&learner, 24).head; ++frames) {
+  }
+  EXPECT_GT(frames, 150);
+  EXPECT_LT(frames, 150 + kLatest);
+}
+
 TEST_F(HeadLearnerTest, AHeadThatIsForgottenBeforeItWasLearnedNeverComes) {
   HeadLearner learner = Learner(nullptr);
   for (int i = 0; i < 40; ++i) ASSERT_FALSE(Show(&learner, 6 * (i / 8 % 4)).head) << i;
