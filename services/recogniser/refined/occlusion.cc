@@ -38,16 +38,16 @@ struct Patch {
   }
 };
 
-}  // namespace
+using Patches = std::array<Patch, kColumns * kRows>;
 
-double HideOccluded(const FaceTexture& texture, Band band, FaceSamples* samples) {
+Patches PatchesOf(const FaceTexture& texture, Band band, const FaceSamples& samples) {
   const std::vector<float>& pattern = texture.pattern(band);
   const std::vector<Eigen::Vector3f>& points = texture.points().points;
-  std::array<Patch, kColumns * kRows> patches{};
+  Patches patches{};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!samples->seen[i] || !texture.known(band)[i]) continue;
+    if (!samples.seen[i] || !texture.known(band)[i]) continue;
     Patch& patch = patches[static_cast<std::size_t>(PatchOf(points[i]))];
-    const float x = pattern[i], y = samples->value[i];
+    const float x = pattern[i], y = samples.value[i];
     patch.x += x;
     patch.y += y;
     patch.xx += x * x;
@@ -55,37 +55,67 @@ double HideOccluded(const FaceTexture& texture, Band band, FaceSamples* samples)
     patch.yy += y * y;
     ++patch.count;
   }
-  // What certainly shows the face tells the light.
-  Patch sure, all;
-  for (const Patch& patch : patches) {
-    if (patch.count < kFewest) continue;
-    all.count += patch.count;
-    all.xx += patch.var_x();
-    if (patch.correlation() < kSure) continue;
-    sure.count += patch.count;
-    sure.xx += patch.var_x();
-    sure.xy += patch.cov();
+  return patches;
+}
+
+/// What the patches that certainly show the face tell of the light, and how much of it all shows.
+struct Light {
+  int points{0};
+  float contrast{0};  ///< of the pattern: sum of squares over all points
+  float gain{0};      ///< 0: nothing is certain
+
+  explicit Light(const Patches& patches) {
+    Patch sure;
+    for (const Patch& patch : patches) {
+      if (patch.count < kFewest) continue;
+      points += patch.count;
+      contrast += patch.var_x();
+      if (patch.correlation() < kSure) continue;
+      sure.count += patch.count;
+      sure.xx += patch.var_x();
+      sure.xy += patch.cov();
+    }
+    const bool enough = static_cast<float>(sure.count) >= kLeastSure * static_cast<float>(points);
+    if (enough && sure.xy > 0) gain = sure.xy / sure.xx;
   }
-  if (static_cast<float>(sure.count) < kLeastSure * static_cast<float>(all.count) || !(sure.xy > 0))
-    return 0;
-  const float gain = sure.xy / sure.xx;
-  const float usual =
-      kUsualShare * gain * std::sqrt(all.xx / static_cast<float>(all.count)) + kNoise;
-  std::array<bool, kColumns * kRows> hidden{};
-  int num_hidden = 0;
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    const Patch& patch = patches[k];
-    if (patch.count < kFewest || patch.correlation() > kLikely) continue;
-    const float contrast = gain * gain * patch.var_x() / static_cast<float>(patch.count);
-    const float unexplained = patch.Unexplained(gain);
-    hidden[k] = unexplained > contrast && unexplained > usual * usual;
-    if (hidden[k]) num_hidden += patch.count;
+};
+
+}  // namespace
+
+double HideOccluded(const FaceTexture& texture, Band band,
+                    const std::array<FaceSamples*, 2>& samples) {
+  std::array<Patches, 2> patches{};
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (samples[e] != nullptr) patches[e] = PatchesOf(texture, band, *samples[e]);
   }
-  if (num_hidden == 0 || num_hidden > kMostHidden * all.count) return 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (hidden[static_cast<std::size_t>(PatchOf(points[i]))]) samples->seen[i] = 0;
+  const std::array<Light, 2> light = {Light(patches[0]), Light(patches[1])};
+  int all = 0, num_hidden = 0;
+  std::array<std::array<bool, kColumns * kRows>, 2> hidden{};
+  for (std::size_t e = 0; e < 2; ++e) {
+    all += light[e].points;
+    // Where one eye sees nothing for certain, the light is what the other sees.
+    const float gain = light[e].gain > 0 ? light[e].gain : light[1 - e].gain;
+    if (!(gain > 0) || light[e].points == 0) continue;
+    const float rms = std::sqrt(light[e].contrast / static_cast<float>(light[e].points));
+    const float usual = kUsualShare * gain * rms + kNoise;
+    for (std::size_t k = 0; k < hidden[e].size(); ++k) {
+      const Patch& patch = patches[e][k];
+      if (patch.count < kFewest || patch.correlation() > kLikely) continue;
+      const float contrast = gain * gain * patch.var_x() / static_cast<float>(patch.count);
+      const float unexplained = patch.Unexplained(gain);
+      hidden[e][k] = unexplained > contrast && unexplained > usual * usual;
+      if (hidden[e][k]) num_hidden += patch.count;
+    }
   }
-  return static_cast<double>(num_hidden) / all.count;
+  if (num_hidden == 0 || num_hidden > kMostHidden * all) return 0;
+  const std::vector<Eigen::Vector3f>& points = texture.points().points;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (samples[e] == nullptr) continue;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (hidden[e][static_cast<std::size_t>(PatchOf(points[i]))]) samples[e]->seen[i] = 0;
+    }
+  }
+  return static_cast<double>(num_hidden) / all;
 }
 
 }  // namespace visavis

@@ -11,6 +11,7 @@ constexpr double kShape_m = 0.0006, kShape_rad = 0.009;     ///< where the face 
 constexpr double kNoiseShare = 0.006;                       ///< of the equations' inverse
 constexpr double kTurned_m = 0.0049, kTurned_rad = 0.0041;  ///< a radian from the mean view
 constexpr double kLearned_rad = 0.0071;
+constexpr double kHiddenDepth_m = 0.010, kHidden_m = 0.002, kHidden_rad = 0.03;  ///< of all
 constexpr double kSettling = 1;  ///< frames: the learned frame is as uncertain as kShape before
 
 void AddIndependent(double sigma_m, double sigma_rad, Matrix6d* covariance) {
@@ -46,6 +47,14 @@ Matrix6d PoseCovariance::OfLearnedFace(const Matrix6d& information,
   const double unsettled = kSettling / (kSettling + count_);
   AddIndependent(unsettled * kShape_m, unsettled * kShape_rad, &covariance);
   return covariance;
+}
+
+Matrix6d WithHidden(const Matrix6d& covariance, double hidden, const Eigen::Vector3d& sight) {
+  Matrix6d more = covariance;
+  AddIndependent(hidden * kHidden_m, hidden * kHidden_rad, &more);
+  const double depth_m = hidden * kHiddenDepth_m;
+  more.topLeftCorner<3, 3>() += depth_m * depth_m * sight * sight.transpose();
+  return more;
 }
 
 Matrix6d WithLever(const Matrix6d& covariance, const Eigen::Vector3d& p_MR_C) {

@@ -29,6 +29,11 @@ class PoseCovariance {
   int count_{0};
 };
 
+/// The covariance of a pose of the learned face of which @p hidden, a share, was behind something
+/// else, whose edges pull at what is seen beside it; most of all in depth, which both eyes fix
+/// together. @p sight: towards the head, unit, in C.
+Matrix6d WithHidden(const Matrix6d& covariance, double hidden, const Eigen::Vector3d& sight);
+
 /// The covariance of the pose of a frame R that is fixed to M: its position hangs on the rotation
 /// with the lever @p p_MR_C, R's origin from M's, in C.
 Matrix6d WithLever(const Matrix6d& covariance, const Eigen::Vector3d& p_MR_C);

@@ -10,7 +10,10 @@ namespace {
 
 constexpr int kHairlinePoints = 33;
 constexpr double kHiddenDoubt = 0.3;  ///< the less is seen, the better it must fit
-constexpr double kNearNcc = 0.75;     ///< of the texture's fine band: the pose is almost right
+// What is before the face has edges of its own, at another depth: beside them the eyes agree on
+// that.
+constexpr double kStereoHidden = 0.1, kNoStereoHidden = 0.3;
+constexpr double kNearNcc = 0.75;  ///< of the texture's fine band: the pose is almost right
 constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
 constexpr double kAtRest_m = 0.0001, kAtRest_rad = 0.0005;  ///< steps so small change nothing
 constexpr int kLastReachFrom = 2;  ///< iterations before look farther along the contours' normals
@@ -39,7 +42,7 @@ const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
                                        const FaceTexture& texture) {
   SampleFace(texture.points(), view[eye], EyePose(*view[eye].geometry, X_CM), band, kMinFacing,
              &samples_[eye]);
-  if (texture.learned()) HideOccluded(texture, band, &samples_[eye]);
+  if (texture.learned()) HideOccluded(texture, band, {&samples_[eye], nullptr});
   return samples_[eye];
 }
 
@@ -79,23 +82,32 @@ void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePos
 void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
                              const FaceTexture& texture, PoseEquations* equations,
                              Refined* refined) {
-  refined->texture_ncc = 0;
-  int eyes = 0;
+  std::array<FaceSamples*, 2> seen{};
   for (std::size_t e = 0; e < 2; ++e) {
     if (!view[e].seen()) continue;
     SampleFace(texture.points(), view[e], poses[e], band, kMinFacing, &samples_[e]);
-    const double hidden = HideOccluded(texture, band, &samples_[e]);
+    seen[e] = &samples_[e];
+  }
+  const double hidden = HideOccluded(texture, band, seen);
+  double sum = 0;
+  int points = 0, eyes = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!view[e].seen()) continue;
     const GainOffset fit = AddPattern(texture.points(), samples_[e], poses[e].R_CM,
                                       texture.pattern(band), texture.known(band), kTextureSigma,
                                       static_cast<float>(config_.texture_weight), equations);
-    refined->texture_ncc += fit.correlation - kHiddenDoubt * hidden;
+    sum += fit.count * fit.correlation;
+    points += fit.count;
     ++eyes;
   }
-  refined->texture_ncc /= std::max(eyes, 1);
+  refined->texture_ncc = sum / std::max(points, 1) - kHiddenDoubt * hidden;
+  refined->hidden = hidden;
   if (eyes == 2) {
-    refined->stereo_ncc =
-        AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM, kStereoSigma,
-                  static_cast<float>(config_.stereo_weight_with_texture), equations);
+    const double stereo_weight =
+        config_.stereo_weight_with_texture *
+        std::clamp((kNoStereoHidden - hidden) / (kNoStereoHidden - kStereoHidden), 0.0, 1.0);
+    refined->stereo_ncc = AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM,
+                                    kStereoSigma, static_cast<float>(stereo_weight), equations);
   }
 }
 

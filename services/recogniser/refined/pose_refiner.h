@@ -38,6 +38,7 @@ struct Refined {
   ContourFit contour;                      ///< both eyes
   double texture_ncc{0};                   ///< mean of the eyes; 0: not learned
   double stereo_ncc{0};                    ///< correlation of both eyes' views; 0: one eye
+  double hidden{0};                        ///< share of the learned face behind something else
   double last_step_m{0}, last_step_rad{0};
 
   /// Whether it had come to rest: what still moves is on its way, not there.

@@ -58,6 +58,7 @@ void RefinedEstimator::ForgetFace() {
   learner_.Forget();
   anchor_.Forget();
   covariance_.Forget();
+  known_X_CM_.reset();
   strange_in_a_row_ = 0;
 }
 
@@ -138,10 +139,12 @@ void RefinedEstimator::Feedforward(const CameraStep& step) {
     centre_ = step.X_C2C1 * *centre_;
     if (is_centred_) CentreOn(*centre_);
   }
-  if (!X_CM_) return;
-  Vector6d phi = PhiFromTransform(*X_CM_);
-  move(&phi);
-  X_CM_ = TransformFromPhi(phi);
+  for (std::optional<RigidTransform>* X : {&X_CM_, &known_X_CM_}) {
+    if (!X->has_value()) continue;
+    Vector6d phi = PhiFromTransform(**X);
+    move(&phi);
+    *X = TransformFromPhi(phi);
+  }
 }
 
 RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X_CM,
@@ -185,6 +188,14 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   const Vector6d phi = PhiFromTransform(best.refined.X_CM);
   population_.Insert(phi, fitness(phi));
   return best;
+}
+
+std::optional<RefinedEstimator::Candidate> RefinedEstimator::WhereLost() {
+  if (!known_X_CM_ || !texture_.learned()) return {};
+  const Candidate known =
+      RefineFrom(*known_X_CM_, &texture_, settings_.refined.search_iterations, 9);
+  if (!IsKnownFace(known, FindTextureNcc())) return {};
+  return known;
 }
 
 bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
@@ -255,6 +266,16 @@ void RefinedEstimator::FollowHead() {
   }
 }
 
+Matrix6d RefinedEstimator::Covariance(bool good) const {
+  const Refined& refined = candidate_.refined;
+  const Matrix6d of_M =
+      good && BothEyes()
+          ? WithHidden(covariance_.OfLearnedFace(refined.information, TowardsCamera(*X_CM_)),
+                       refined.hidden, X_CM_->translation().normalized())
+          : PoseCovariance::OfAnyFace(refined.information);
+  return WithLever(of_M, X_CM_->linear() * X_MR_.translation());
+}
+
 const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const CameraStep& step,
                                           StageTimer* timer) {
   const EvidenceConfig& e = settings_.refined.evidence;
@@ -286,7 +307,8 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     if (bad_in_a_row_ == kStrangerGone) RememberEnrolled();
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
-    candidate_ = SearchNearest();
+    const std::optional<Candidate> there = WhereLost();
+    candidate_ = there ? *there : SearchNearest();
     // One eye can keep a track for a while, not begin one: its depth is a guess.
     const bool known = IsKnownFace(candidate_, FindTextureNcc());
     if (known || !BothEyes()) strange_in_a_row_ = 0;
@@ -303,15 +325,12 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (good && BothEyes()) LookForEnrolled();
   if (good && BothEyes() && texture_.learned() && !texture_.fixed()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
+  if (good && texture_.learned()) known_X_CM_ = X_CM_;
   FollowHead();
   estimate_.X_CM = *X_CM_ * X_MR_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
-  const Matrix6d& information = candidate_.refined.information;
-  estimate_.covariance =
-      WithLever(good && BothEyes() ? covariance_.OfLearnedFace(information, TowardsCamera(*X_CM_))
-                                   : PoseCovariance::OfAnyFace(information),
-                X_CM_->linear() * X_MR_.translation());
+  estimate_.covariance = Covariance(good);
   total_generations_ += estimate_.generations;
   if (good && BothEyes()) Learn(frame);  // one eye's depth is no master
   ++frames_;

@@ -77,6 +77,8 @@ class RefinedEstimator final : public Estimator {
   Candidate RefineFrom(const RigidTransform& X_CM, const FaceTexture* texture, int iterations,
                        int reach_px);
   Candidate Track();
+  /// Where the learned face was lost, if it is there again: from behind a hand.
+  std::optional<Candidate> WhereLost();
   Candidate Search();
   /// The same; where several faces are in view and none is known, the one that is wanted.
   Candidate SearchNearest();
@@ -116,6 +118,8 @@ class RefinedEstimator final : public Estimator {
   const PreparedHead& head() const { return learned_ ? *learned_ : head_; }
   void LearnColors(const RigidTransform& X_CM);
   void MoveAnchor();
+  /// Of the pose of R. @p good: the face was seen.
+  Matrix6d Covariance(bool good) const;
 
   /// @p count lowered to @p share of it, not below @p least.
   static int Lowered(int count, double share, int least);
@@ -140,9 +144,10 @@ class RefinedEstimator final : public Estimator {
   std::array<std::optional<ImageView>, 2> pictures_;
   StereoView view_;
   RealPopulation population_;
-  bool is_centred_{false};                 ///< the population's space is round centre_
-  std::optional<Eigen::Vector3d> centre_;  ///< of the search space once a head was tracked
-  std::optional<RigidTransform> X_CM_;     ///< of the last frame, carried to this one
+  bool is_centred_{false};                    ///< the population's space is round centre_
+  std::optional<Eigen::Vector3d> centre_;     ///< of the search space once a head was tracked
+  std::optional<RigidTransform> X_CM_;        ///< of the last frame, carried to this one
+  std::optional<RigidTransform> known_X_CM_;  ///< where the learned face was last seen, likewise
   Candidate candidate_;
   std::vector<Candidate> candidates_;
   std::vector<Eigen::Vector3d> rejected_;  ///< p_CM of places that proved to be no face

@@ -8,7 +8,8 @@
 namespace visavis {
 namespace {
 
-constexpr double kClearNcc = 0.8;  ///< of the texture: a frame to learn a head from
+constexpr double kClearNcc = 0.8;     ///< of the texture: a frame to learn a head from
+constexpr double kFreeHidden = 0.25;  ///< share of the face, likewise
 
 }  // namespace
 
@@ -56,7 +57,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
 void RefinedEstimator::Learn(const StereoFrame& frame) {
   if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
   if (estimate_.status == TrackStatus::kTracking && !knows_enrolled() &&
-      candidate_.refined.texture_ncc > kClearNcc)
+      candidate_.refined.texture_ncc > kClearNcc && candidate_.refined.hidden < kFreeHidden)
     learner_.Add(frame, candidate_.refined.X_CM, colors_);
   if (estimate_.status != TrackStatus::kTracking) return;
   covariance_.Learn(TowardsCamera(candidate_.refined.X_CM));

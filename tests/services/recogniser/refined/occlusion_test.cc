@@ -48,7 +48,7 @@ class OcclusionTest : public ::testing::Test {
 
 TEST_F(OcclusionTest, AFreeFaceIsSeenWhole) {
   const FaceSamples before = samples_;
-  EXPECT_EQ(HideOccluded(texture_, kFineBand, &samples_), 0);
+  EXPECT_EQ(HideOccluded(texture_, kFineBand, {&samples_, nullptr}), 0);
   EXPECT_EQ(samples_.seen, before.seen);
 }
 
@@ -57,12 +57,12 @@ TEST_F(OcclusionTest, WhatCoversAPartOfTheFaceIsLeftOutAndNothingElse) {
   const auto upper_half = [](const Eigen::Vector3f& p) { return p.y() < 0.04f; };
   const FaceSamples before = samples_;
   Hide(cheek);
-  EXPECT_GT(HideOccluded(texture_, kFineBand, &samples_), 0.05);
+  EXPECT_GT(HideOccluded(texture_, kFineBand, {&samples_, nullptr}), 0.05);
   EXPECT_LT(SeenInAndOut(cheek).first, 0.1);
   EXPECT_GT(SeenInAndOut(cheek).second, 0.95);
   samples_ = before;
   Hide(upper_half);
-  EXPECT_GT(HideOccluded(texture_, kFineBand, &samples_), 0.3);
+  EXPECT_GT(HideOccluded(texture_, kFineBand, {&samples_, nullptr}), 0.3);
   EXPECT_LT(SeenInAndOut(upper_half).first, 0.2);
   EXPECT_GT(SeenInAndOut(upper_half).second, 0.9);
 }
@@ -70,18 +70,31 @@ TEST_F(OcclusionTest, WhatCoversAPartOfTheFaceIsLeftOutAndNothingElse) {
 TEST_F(OcclusionTest, AFaceThatIsNowhereAsLearnedIsNotExplainedAway) {
   const FaceSamples before = samples_;
   Hide([](const Eigen::Vector3f&) { return true; });
-  EXPECT_EQ(HideOccluded(texture_, kFineBand, &samples_), 0);
+  EXPECT_EQ(HideOccluded(texture_, kFineBand, {&samples_, nullptr}), 0);
   EXPECT_EQ(samples_.seen, before.seen);
   const GainOffset fit =
       FitPattern(samples_, texture_.pattern(kFineBand), texture_.known(kFineBand));
   EXPECT_LT(fit.correlation, 0.3);
 }
 
+TEST_F(OcclusionTest, AnEyeThatSeesNothingOfTheFaceIsJudgedByTheOthersLight) {
+  FaceSamples free = samples_;
+  const auto all = [](const Eigen::Vector3f&) { return true; };
+  Hide(all);
+  const FaceSamples covered = samples_;
+  EXPECT_EQ(HideOccluded(texture_, kFineBand, {&samples_, nullptr}), 0);
+  samples_ = covered;
+  const std::vector<unsigned char> before = free.seen;
+  EXPECT_NEAR(HideOccluded(texture_, kFineBand, {&free, &samples_}), 0.5, 0.06);
+  EXPECT_EQ(free.seen, before);
+  EXPECT_LT(SeenInAndOut(all).first, 0.1);
+}
+
 TEST_F(OcclusionTest, ThePictureOfAHalfHiddenFaceFitsOnceTheHandIsLeftOut) {
   Hide([](const Eigen::Vector3f& p) { return p.x() > 0; });
   const double before =
       FitPattern(samples_, texture_.pattern(kFineBand), texture_.known(kFineBand)).correlation;
-  HideOccluded(texture_, kFineBand, &samples_);
+  HideOccluded(texture_, kFineBand, {&samples_, nullptr});
   const double after =
       FitPattern(samples_, texture_.pattern(kFineBand), texture_.known(kFineBand)).correlation;
   EXPECT_LT(before, 0.85);

@@ -72,6 +72,17 @@ TEST(PoseCovarianceTest, AnotherFaceBeginsAnew) {
 }
 
 // Position of R: p + w x r for a small turn w.
+TEST(PoseCovarianceTest, AHiddenFaceIsLessSureMostOfAllAlongTheLineOfSight) {
+  const Matrix6d free = PoseCovariance::OfAnyFace(Information());
+  EXPECT_EQ(WithHidden(free, 0, {0, 0, 1}), free);
+  const Matrix6d more = WithHidden(free, 0.5, {0, 0.6, 0.8}) - free;
+  const Vector3d along(0, 0.6, 0.8), across(0, 0.8, -0.6);
+  const Eigen::Matrix3d place = more.topLeftCorner<3, 3>();
+  EXPECT_NEAR(1e3 * std::sqrt(along.dot(place * along)), std::hypot(5.0, 1.0), 1e-6);
+  EXPECT_NEAR(1e3 * std::sqrt(across.dot(place * across)), 1, 1e-6);
+  EXPECT_NEAR(1e3 * std::sqrt(more(4, 4)), 15, 1e-6);
+}
+
 TEST(PoseCovarianceTest, ALeverTurnsRotationIntoPosition) {
   Random random(2);
   Matrix6d root;

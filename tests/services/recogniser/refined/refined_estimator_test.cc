@@ -39,9 +39,10 @@ class RefinedEstimatorTest : public ::testing::Test {
     if (eyes != Eyes::kRight) frame.left = scene_.picture(eyes == Eyes::kSwapped ? 0 : 1);
     return estimator_.Process(frame, step, &timer_);
   }
-  const Estimate& SeeHeadAt(const Vector6d& phi, const CameraStep& step = {}) {
+  const Estimate& SeeHeadAt(const Vector6d& phi, const CameraStep& step = {},
+                            const Painter& painter = FeaturedHead) {
     truth_ = TransformFromPhi(phi);
-    scene_.Show(truth_, FeaturedHead);
+    scene_.Show(truth_, painter);
     return See(Eyes::kBoth, step);
   }
   void ExpectTracked(const Estimate& estimate, double mm, double deg) const {
@@ -105,6 +106,26 @@ TEST_F(RefinedEstimatorTest, AHeadThatLeavesIsLostAtOnceAndTrackedWhenItComesBac
   int lost = 0;
   while (lost < 10 && SeeHeadAt(kPlace).status != TrackStatus::kTracking) ++lost;
   ExpectTracked(SeeHeadAt(kPlace), 5, 2.5);
+}
+
+TEST_F(RefinedEstimatorTest, AFaceHalfCoveredIsTrackedAndSaidToBeLessSure) {
+  for (int i = 0; i < 10; ++i) SeeHeadAt(kPlace);
+  const Matrix6d free = *See().covariance;
+  const Painter half = [](const Eigen::Vector3f& p_M) {
+    return p_M.x() > 0.005f ? Color{120, 90, 200} : FeaturedHead(p_M);
+  };
+  const Estimate& covered = SeeHeadAt(kPlace, {}, half);
+  ExpectTracked(covered, 6, 2.5);
+  EXPECT_GT(std::sqrt((*covered.covariance)(2, 2)), 2 * std::sqrt(free(2, 2)));
+}
+
+TEST_F(RefinedEstimatorTest, AFaceUncoveredWhereItWasLostIsTrackedAtOnceWithoutASearch) {
+  for (int i = 0; i < 10; ++i) SeeHeadAt(kPlace);
+  const Painter covered = [](const Eigen::Vector3f&) { return kSceneWall; };
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(SeeHeadAt(kPlace, {}, covered).status, TrackStatus::kLost);
+  const Estimate& estimate = SeeHeadAt(kPlace);
+  ExpectTracked(estimate, 4, 2);
+  EXPECT_EQ(estimate.evaluations, 0);
 }
 
 TEST_F(RefinedEstimatorTest, SwappedEyesAreNeverTracked) {
