@@ -67,6 +67,9 @@ OtherRobot() {
 
 NotDeployed() {
   local code=0
+  sed 's/ recogniser.yaml$//' "$robot/system.conf" >"$robot/fewer.conf"
+  Refused '^fewer.conf:[0-9]+: host compute: /etc/visavis/fleet: .*visavis-fleet deploy' \
+    "--system fewer.conf start" || code=1
   echo 'arm_wait_ms: 14' >>"$robot/recogniser.yaml"
   Refused '^system.conf:[0-9]+: host compute: /etc/visavis/fleet: .*visavis-fleet deploy' || code=1
   return "$code"
@@ -104,6 +107,20 @@ BadHosts() {
   sed '/10.77.0.[23]$/d; s/compute\|storage/camera/; $auser nobody' "$robot/system.conf" >"$robot/nobody.conf"
   Refused '^nobody.conf:5: host camera: login: "nobody@10.77.0.1": must be possible with a key' \
     "--system nobody.conf start" || code=1
+  return "$code"
+}
+
+# One machine by two names, and one whose package lacks a service: as on a processor without Embree.
+BadMachines() {
+  local code=0
+  { sed -n '/^lcm_url\|^prefix\|^ssh_option\|^host *storage\|^logger/p' "$robot/system.conf"
+    echo "recogniser localhost"; } >"$robot/twice.conf"
+  Refused '^twice.conf:6: host localhost: host name: "storage": is that of storage too: ' \
+    "--system twice.conf deploy" || code=1
+  LabRun camera sh -c 'cp /usr/lib/visavis/services /run/services; sed -i /simulator/d /usr/lib/visavis/services'
+  Refused '^system.conf:[0-9]+: host camera: service: "simulator": must be one of the package.s there .arm-state' || code=1
+  Operate "visavis-fleet stop" || code=1
+  LabRun camera cp /run/services /usr/lib/visavis/services
   return "$code"
 }
 
