@@ -71,6 +71,9 @@ HostFault() {
   num_faults=$((num_faults + 1))
 }
 
+# What ssh said means that the machine is off: one of multicast DNS has no address then.
+IsOff() { [[ $1 == *"resolve hostname"*.local:* || ! $1 =~ (resolve hostname|ermission denied|key verification failed|authentication failures|onfiguration option) ]]; }
+
 # After OnHosts: takes out the hosts that could not be reached, with a line for each, and counts
 # those that can be but let nobody in as faults.
 SortOutOff() {
@@ -78,7 +81,13 @@ SortOutOff() {
   for host in "$@"; do
     (($(Code "$host") == 255)) || continue
     reason=$(tail -1 "$scratch/$host.err" | tr -d '\r')
-    off[$host]=$reason
+    off[$host]=${reason:-no answer}
+    if IsOff "$reason"; then
+      printf '%s:%s: host %s (%s): is off or cannot be reached: %s; left out: %s\n' "$system_file" \
+        "${given_at[host $host]:-1}" "$host" "${address[$host]}" "${off[$host]}" \
+        "$(List $(ServicesOn "$host"))" >&2
+      continue
+    fi
     case $reason in
       *"resolve hostname"*)
         HostFault "$host" address "${address[$host]}" "must be an address or a name that is known: $reason"
@@ -87,14 +96,9 @@ SortOutOff() {
         HostFault "$host" login "${operator:+$operator@}${address[$host]}" \
           "must be a machine that ssh knows, log in once by hand: ssh ${operator:+$operator@}${address[$host]}"
         ;;
-      *"ermission denied"* | *"onfiguration option"*)
+      *)
         HostFault "$host" login "${operator:-$(id -un)}@${address[$host]}" \
           "must be possible with a key, without a password: $reason"
-        ;;
-      *)
-        printf '%s:%s: host %s (%s): is off or cannot be reached: %s; left out: %s\n' "$system_file" \
-          "${given_at[host $host]:-1}" "$host" "${address[$host]}" "${reason:-no answer}" \
-          "$(List $(ServicesOn "$host"))" >&2
         ;;
     esac
   done

@@ -98,16 +98,44 @@ MendsRoute() {
   Operate "visavis-fleet doctor 2>&1 | grep -E 'storage +messages +ok +of compute'"
 }
 
-# A name that nobody knows, and a user who may not log in: neither is a machine that is off.
+# A service that takes its configuration and does not start: its own words say why.
+FailsToStart() {
+  local words
+  printf '%s\n' 'source: aravis' 'start: require' >"$robot/no_camera.yaml"
+  sed 's/ stereo_capture.yaml$/ no_camera.yaml/' "$robot/recorded.conf" >"$robot/no_camera.conf"
+  words=$(Operate "visavis-fleet --system no_camera.conf deploy && visavis-fleet --system no_camera.conf start" 2>&1) && return 1
+  printf '%s\n' "$words"
+  Operate "visavis-fleet stop && visavis-fleet deploy" &&
+    grep -q '^camera: start: visavis-stereo-capture: start: require: left camera: left.device: LEFT' <<<"$words" &&
+    grep -q '^compute  *started arm-state, recogniser' <<<"$words"
+}
+
+# A name that nobody knows, a machine that is not known yet, and a user who may not log in: none is a
+# machine that is off.
 BadHosts() {
   local code=0
   sed 's/10.77.0.1$/nowhere.invalid/' "$robot/system.conf" >"$robot/nowhere.conf"
   Refused '^nowhere.conf:5: host camera: address: "nowhere.invalid": must be an address or a name' \
     "--system nowhere.conf start" || code=1
+  # For another user, as this one is connected.
+  sed '/10.77.0.[23]$/d; s/compute\|storage/camera/; $auser root
+    s/=accept-new/=yes\nssh_option UserKnownHostsFile=\/dev\/null/' \
+    "$robot/system.conf" >"$robot/unknown.conf"
+  Refused '^unknown.conf:6: host camera: login: "root@10.77.0.1": must be a machine that ssh knows, log in once by hand: ssh root@10.77.0.1' \
+    "--system unknown.conf start" || code=1
   sed '/10.77.0.[23]$/d; s/compute\|storage/camera/; $auser nobody' "$robot/system.conf" >"$robot/nobody.conf"
   Refused '^nobody.conf:5: host camera: login: "nobody@10.77.0.1": must be possible with a key' \
     "--system nobody.conf start" || code=1
   return "$code"
+}
+
+# A machine that goes by a name of multicast DNS has no address while it is off.
+OffByName() {
+  sed 's/10.77.0.1$/camera.local/' "$robot/system.conf" >"$robot/local.conf"
+  Says "^local.conf:5: host camera (camera.local): is off or cannot be reached" \
+    Operate "visavis-fleet --system local.conf start" &&
+    Operate "visavis-fleet --system local.conf status | grep -E '^logger +storage +active'" &&
+    Operate "visavis-fleet stop"
 }
 
 # One machine by two names, and one whose package lacks a service: as on a processor without Embree.
@@ -145,4 +173,16 @@ OneMachine() {
     grep -qE '^logger .* active .* enabled ' "$LAB/status" &&
     grep -qE '^recogniser .* active .* disabled ' "$LAB/status" &&
     Operate "$fleet stop && ! $fleet status"
+}
+
+# The package goes: with it what runs; configuration and logs stay.
+Removal() {
+  local left
+  Operate "visavis-fleet --system one.conf start" && LabRun storage dpkg --no-triggers -r visavis || return 1
+  ! LabRun storage pgrep -u visavis || return 1
+  LabRun storage test -e /etc/visavis/logger.yaml -a -e /etc/visavis/fleet/logger.yaml || return 1
+  [[ -n $(LabRun storage find /var/lib/visavis/logs -name '*.lcm') ]] || return 1
+  left=$(LabRun storage systemctl list-units --all --state=loaded --no-legend 'visavis*')
+  left+=$(LabRun storage find /usr /lib/systemd /run/systemd -xdev -iname '*visavis*' -not -path '/usr/share/doc/*')
+  [[ -z $left ]] || { echo "left: $left"; return 1; }
 }

@@ -146,9 +146,12 @@ Expect "what was recorded on storage plays back" PlaysBack
 Expect "another robot on our group and prefix keeps all from starting" OtherRobot
 Expect "a host that nobody knows, or that lets nobody in, keeps all from starting" BadHosts
 Expect "a bad configuration is deployed nowhere" BadConfiguration
+Expect "a machine that has no address while it is off is one that is off" OffByName
+Expect "a service that does not start says why; the rest is started" FailsToStart
 Expect "a machine given twice, or without the service, keeps all from starting" BadMachines
 Expect "a system file that is not deployed keeps all from starting" NotDeployed
 Expect "one machine alone, without ssh" OneMachine
+Expect "removal ends what runs, and leaves configuration and logs" Removal
 
 if ((num_failures > 0)); then
   echo "FAIL: $num_failures"
