@@ -11,6 +11,20 @@ LogsOfAll() {
     sort -c -s -k1,1 <<<"$words"
 }
 
+# Who may not read a machine's journal is told, and does not take silence for peace.
+LogsForMembers() {
+  local words code=0
+  LabRun camera gpasswd -d pilot systemd-journal
+  LabRun camera pkill -u pilot sshd # a connection keeps the groups that it began with
+  words=$(Operate "visavis-fleet logs" 2>&1) && code=1
+  LabRun camera gpasswd -a pilot systemd-journal
+  LabRun camera pkill -u pilot sshd
+  printf '%s\n' "$words"
+  grep -q '^system.conf:5: host camera: logs: "pilot": must be a member of systemd-journal there' <<<"$words" &&
+    grep -q '^[^ ]* storage ' <<<"$words" || code=1
+  return "$code"
+}
+
 # Following ends with the signal that ends it, and leaves nobody reading.
 FollowsLogs() {
   local words

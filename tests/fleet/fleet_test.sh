@@ -139,6 +139,7 @@ Expect "status exits with 0 again" WaitFor 10 "ssh" Operate "visavis-fleet statu
 # ---- at one seat
 Expect "logs of all machines" LogsOfAll
 Expect "logs of all machines as they come" FollowsLogs
+Expect "logs are refused to who may not read them" LogsForMembers
 Expect "a service of the wrong version keeps all from starting" WrongVersion
 Expect "stop" Operate "visavis-fleet stop"
 Expect "nothing runs" Fails Operate "visavis-fleet status | grep -w active"
