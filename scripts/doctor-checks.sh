@@ -228,8 +228,15 @@ CheckStatus() {
   done
 }
 
+# The value of a top-level key of what configures a service here.
+Configured() {
+  local file=/etc/visavis/fleet/$1.yaml
+  [[ -e $file ]] || file=/etc/visavis/$1.yaml
+  sed -n "s/^$2:[[:space:]]*\([^#[:space:]]*\).*/\1/p" "$file" 2>/dev/null
+}
+
 CheckCameras() {
-  local found mtu
+  local list found held mtu source
   if ! Runs stereo-capture; then
     Say skip cameras "stereo-capture does not run here"
     return
@@ -237,11 +244,20 @@ CheckCameras() {
     Say skip cameras "visavis-stereo-capture is not installed"
     return
   fi
-  found=$(timeout 20 visavis-stereo-capture --list 2>&1 | grep -vc '^$')
-  if ((found > 0)); then
-    Say ok cameras "$found lines of visavis-stereo-capture --list"
-  else
+  source=$(Configured stereo-capture source)
+  if [[ $source == folder || $source == video ]]; then
+    Say skip cameras "stereo-capture reads a $source"
+    return
+  fi
+  list=$(timeout 60 visavis-stereo-capture --list 2>&1) || true
+  found=$(grep '^[^ ]' <<<"$list" | grep -vc '^no ')
+  held=$(grep -c '^  another program holds it' <<<"$list")
+  if ((found == 0)); then
     Say FAIL cameras "none found" "cables and power; visavis-stereo-capture --list; sudo ufw allow proto udp from any port 3956"
+  elif ((held > 0)) && [[ $(systemctl is-active visavis@stereo-capture 2>/dev/null) != active ]]; then
+    Say FAIL cameras "$held of $found are held by another program, maybe on another machine" "end that program; visavis-stereo-capture --list"
+  else
+    Say ok cameras "$found found"
   fi
   mtu=$(cat /sys/class/net/"${device:-lo}"/mtu)
   ((mtu >= 8000)) ||

@@ -1,11 +1,13 @@
 # To be sourced by scripts/fleet after fleet-system.sh: commands on many machines at once, and what
 # must hold before anything is started. Installed in /usr/lib/visavis.
 # shellcheck shell=bash
-# shellcheck disable=SC2046  # services and hosts are words: lists of them are to be split
+# shellcheck disable=SC2046,SC2086  # services and hosts are words: lists of them are to be split
 # shellcheck disable=SC2154  # fleet-system.sh sets them
 
 CONTROL=/usr/lib/visavis/fleet-control # root's part on each machine, see its --help
 FLEET_FOLDER=/etc/visavis/fleet        # what `deploy` put on each machine
+THERE=/usr/lib/visavis/services        # the services of the package there, one a line
+MAX_FILE_BYTES=20000000                # as fleet-control's max_file_bytes
 
 declare -A off=()       # why a host is left out
 declare -A host_name=() # what a host calls itself
@@ -38,11 +40,11 @@ ExecAt() {
   fi
 }
 
-# Root's part, in a command: run as root where we are not.
-Control() {
-  # shellcheck disable=SC2016  # for the shell there
-  printf 'c=%s; [ "$(id -u)" = 0 ] || c="sudo -n $c"; $c %s' "$CONTROL" "$*"
-}
+# Root's part, in a command: run as root where we are not. ControlAs: its words, as $c.
+# shellcheck disable=SC2016  # for the shell there
+ControlAs() { printf 'c=%s; [ "$(id -u)" = 0 ] || c="sudo -n $c"; ' "$CONTROL"; }
+# shellcheck disable=SC2016
+Control() { ControlAs && printf '$c %s' "$*"; }
 
 # OnHosts FUNCTION HOST...: runs FUNCTION HOST for all at once; HOST.out, HOST.err and HOST.code in
 # scratch hold what came of it.
@@ -69,6 +71,9 @@ HostFault() {
   num_faults=$((num_faults + 1))
 }
 
+# What ssh said means that the machine is off: one of multicast DNS has no address then.
+IsOff() { [[ $1 == *"resolve hostname"*.local:* || ! $1 =~ (resolve hostname|ermission denied|key verification failed|authentication failures|onfiguration option) ]]; }
+
 # After OnHosts: takes out the hosts that could not be reached, with a line for each, and counts
 # those that can be but let nobody in as faults.
 SortOutOff() {
@@ -76,19 +81,24 @@ SortOutOff() {
   for host in "$@"; do
     (($(Code "$host") == 255)) || continue
     reason=$(tail -1 "$scratch/$host.err" | tr -d '\r')
-    off[$host]=$reason
+    off[$host]=${reason:-no answer}
+    if IsOff "$reason"; then
+      printf '%s:%s: host %s (%s): is off or cannot be reached: %s; left out: %s\n' "$system_file" \
+        "${given_at[host $host]:-1}" "$host" "${address[$host]}" "${off[$host]}" \
+        "$(List $(ServicesOn "$host"))" >&2
+      continue
+    fi
     case $reason in
       *"resolve hostname"*)
         HostFault "$host" address "${address[$host]}" "must be an address or a name that is known: $reason"
         ;;
-      *"ermission denied"* | *"key verification failed"* | *"onfiguration option"*)
-        HostFault "$host" login "${operator:-$(id -un)}@${address[$host]}" \
-          "must be possible with a key, without a password: $reason"
+      *"key verification failed"*)
+        HostFault "$host" login "${operator:+$operator@}${address[$host]}" \
+          "must be a machine that ssh knows, log in once by hand: ssh ${operator:+$operator@}${address[$host]}"
         ;;
       *)
-        printf '%s:%s: host %s (%s): is off or cannot be reached: %s; left out: %s\n' "$system_file" \
-          "${given_at[host $host]:-1}" "$host" "${address[$host]}" "${reason:-no answer}" \
-          "$(List $(ServicesOn "$host"))" >&2
+        HostFault "$host" login "${operator:-$(id -un)}@${address[$host]}" \
+          "must be possible with a key, without a password: $reason"
         ;;
     esac
   done
@@ -104,10 +114,11 @@ Reachable() {
 # that it hears on the LCM network within so many seconds.
 Inquire() {
   local command units=("${SERVICES[@]/#/visavis@}")
-  command="echo name \$(hostname)
+  command="echo name \$(uname -n)
+    echo services \$(cat $THERE 2>/dev/null)
     v=\$($(Control version) 2>&1) && echo version \$v || echo no-version \$v
     systemctl show -p Id,ActiveState,SubState,MainPID,NRestarts,UnitFileState,ActiveEnterTimestamp ${units[*]} | sed 's/^/unit /'
-    cd $FLEET_FOLDER 2>/dev/null && sha256sum -- * 2>/dev/null | sed 's/^/file /'"
+    cd $FLEET_FOLDER 2>/dev/null && find . -type f -exec sha256sum {} + 2>/dev/null | sed 's/^/file /'"
   if [[ ${listen_s:-0} != 0 ]]; then
     command="exec 3>&1
       { h=\$(visavis-probe listen --lcm-url '$lcm_url' --prefix '$prefix' --seconds $listen_s 2>&1) &&
@@ -148,9 +159,23 @@ InquireAll() {
   done
 }
 
-# The package is installed everywhere, the same, and this user may control it.
+# No machine stands for two: services are told apart by the names that machines have for themselves,
+# and each has one folder to deploy to.
+CheckNames() {
+  local host name
+  local -A owner=()
+  for host in $(Reachable); do
+    name=${host_name[$host]:-unknown}
+    [[ -z ${owner[$name]:-} ]] || HostFault "$host" "host name" "$name" \
+      "is that of ${owner[$name]} too: one machine must be given once, two must differ: sudo hostnamectl hostname NAME"
+    owner[$name]=$host
+  done
+}
+
+# The package is installed everywhere, the same, with the services that are to run there, and this
+# user may control it.
 CheckVersions() {
-  local host version first='' first_host=''
+  local host version first='' first_host='' there service
   for host in $(Reachable); do
     version=$(Answer "$host" version)
     if [[ -z $version ]]; then
@@ -161,6 +186,12 @@ CheckVersions() {
     else
       first=$version first_host=$host
     fi
+    [[ -n $version ]] || continue
+    there=$(Answer "$host" services)
+    for service in $(ServicesOn "$host"); do
+      IsOneOf "$service" $there ||
+        HostFault "$host" service "$service" "must be one of the package's there ($(List $there))"
+    done
   done
 }
 
@@ -168,7 +199,8 @@ CheckVersions() {
 CheckDeployed() {
   local host
   for host in $(Reachable); do
-    if [[ -n $(comm -23 "$scratch/$host.sums" <(Answer "$host" file | sort)) ]]; then
+    TellUnfit "$host"
+    if [[ $(<"$scratch/$host.sums") != "$(Answer "$host" file | sort)" ]]; then
       HostFault "$host" "$FLEET_FOLDER" "" "must be what the system file says: visavis-fleet deploy"
     fi
   done
@@ -217,18 +249,63 @@ SumConfigurations() {
   local host
   for host in "${hosts[@]}"; do
     MakeConfiguration "$host"
-    (cd "$scratch/$host" && sha256sum -- * | sort) >"$scratch/$host.sums"
+    (cd "$scratch/configuration/$host" && find . -type f -exec sha256sum {} + | sort) >"$scratch/$host.sums"
   done
 }
 
-# MakeConfiguration HOST: the files that `deploy` brings there, as a folder in scratch.
+# MakeConfiguration HOST: the files that `deploy` brings there, as a folder in scratch; HOST.unfit
+# holds what is wrong with them, for TellUnfit.
 MakeConfiguration() {
-  local host=$1 service file
-  rm -rf "${scratch:?}/$host"
-  mkdir -p "$scratch/$host"
-  printf 'LCM_DEFAULT_URL=%s\nVISAVIS_PREFIX=%s\n' "$lcm_url" "$prefix" >"$scratch/$host/environment"
+  local host=$1 service file folder=$scratch/configuration/$1
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  : >"$scratch/$host.unfit"
+  printf 'LCM_DEFAULT_URL=%s\nVISAVIS_PREFIX=%s\n' "$lcm_url" "$prefix" >"$folder/environment"
   for service in $(ServicesOn "$host"); do
     file=$(FileOf "$service" "$host")
-    [[ -z $file ]] || cp "$file" "$scratch/$host/$service.yaml"
+    [[ -n $file ]] || continue
+    cp -- "$file" "$folder/$service.yaml"
+    CopyNamed "$host" "$(dirname "$file")" "$file" >>"$scratch/$host.unfit"
   done
+}
+
+# Words of a YAML file that may name another file.
+WordsOf() {
+  sed 's/\(^\|[[:space:]]\)#.*//' "$1" | tr '][{}",'\''[:space:]' '[\n*]' |
+    grep -vE '^([-+0-9.e]*|.*:)$' | sort -u
+}
+
+# CopyNamed HOST FOLDER FILE: the files that FILE, a configuration of FOLDER or a YAML file that it
+# names, names in its turn, to the same place relative to FOLDER. What is no file here, or an absolute
+# path, the machine itself must have. Prints a line for each that cannot be brought.
+CopyNamed() {
+  local host=$1 folder=$2 file=$3 word from name to
+  while IFS= read -r word; do
+    from=$(dirname "$file")/$word
+    [[ $word != /* && -f $from && ! $from -ef $file ]] || continue
+    name=$(realpath -ms --relative-to="$folder" "$from")
+    to=$scratch/configuration/$host/$name
+    if [[ ! $name =~ ^[A-Za-z0-9_][A-Za-z0-9._+-]*(/[A-Za-z0-9_][A-Za-z0-9._+-]*)*$ ]]; then
+      echo "$file: names \"$word\": must lie in $folder or below, of letters, digits and ._+-, or be an absolute path there"
+    elif [[ $name == environment ]] || IsOneOf "${name%.yaml}" "${SERVICES[@]}"; then
+      echo "$file: names \"$word\": must have another name, as that is a service's there"
+    elif [[ -e $to ]]; then
+      cmp -s "$from" "$to" ||
+        echo "$file: names \"$word\": must have another name, as another service of $host names another file so"
+    elif [[ ! -r $from || $(stat -Lc %s "$from") -gt $MAX_FILE_BYTES ]]; then
+      echo "$file: names \"$word\": must be readable, of at most $((MAX_FILE_BYTES / 1000000)) MB"
+    else
+      mkdir -p "$(dirname "$to")" && cp -- "$from" "$to"
+      if [[ $word == *.y*ml ]]; then CopyNamed "$host" "$folder" "$from"; fi
+    fi
+  done < <(WordsOf "$file")
+}
+
+# TellUnfit HOST: what MakeConfiguration found, as faults.
+TellUnfit() {
+  local line
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >&2
+    num_faults=$((num_faults + 1))
+  done <"$scratch/$1.unfit"
 }

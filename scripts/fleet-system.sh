@@ -83,8 +83,8 @@ SetKey() {
   case $key in
     lcm_url) lcm_url=$value ;;
     prefix)
-      [[ $value =~ ^[A-Z0-9_]{1,30}$ ]] ||
-        Refuse "$number" prefix "$value" "must be 1 to 30 of A-Z, 0-9 and _, e.g. ROBOT1_"
+      [[ $value =~ ^[A-Z0-9_]{1,31}$ ]] ||
+        Refuse "$number" prefix "$value" "must be 1 to 31 of A-Z, 0-9 and _, e.g. ROBOT1_"
       prefix=$value
       ;;
     user)

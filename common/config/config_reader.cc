@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -137,13 +138,23 @@ void ConfigSource::Override(const std::string& assignment) {
   overrides_[key] = "--set " + assignment;
 }
 
-std::string ConfigSource::PlaceOf(const std::string& dotted_key) const {
+const std::string* ConfigSource::FlagOf(const std::string& dotted_key) const {
   for (const auto& [key, flag] : overrides_) {
     if (key == dotted_key || key.rfind(dotted_key + ".", 0) == 0 ||
         dotted_key.rfind(key + ".", 0) == 0) {
-      return flag;
+      return &flag;
     }
   }
+  return nullptr;
+}
+
+std::string ConfigSource::FileOf(const std::string& dotted_key, const std::string& name) const {
+  if (name.empty() || FlagOf(dotted_key)) return name;
+  return std::filesystem::path(filename_).parent_path() / name;
+}
+
+std::string ConfigSource::PlaceOf(const std::string& dotted_key) const {
+  if (const std::string* flag = FlagOf(dotted_key)) return *flag;
   YAML::Node node;
   node.reset(root_);
   int line = -1;

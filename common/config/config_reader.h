@@ -30,9 +30,14 @@ class ConfigSource {
   /// "file.yaml:12" or "--set key=value" for a dotted key; the file's name where it is in neither.
   std::string PlaceOf(const std::string& dotted_key) const;
 
+  /// The file that @p dotted_key names by @p name: relative to the folder of the YAML file that
+  /// says so, so that both move together; of --set: to where the program runs.
+  std::string FileOf(const std::string& dotted_key, const std::string& name) const;
+
  private:
   ConfigSource() = default;
   void Parse(const std::string& text);
+  const std::string* FlagOf(const std::string& dotted_key) const;  // null: no --set gave it
   void Override(const std::string& assignment);
 
   std::string filename_;
@@ -56,6 +61,13 @@ class ConfigReader {
   template <typename T>
   void Visit(const std::string& key, T* value, const Rule<T>& rule) {
     VisitIf(key, value, &rule);
+  }
+
+  /// As Visit(), of a file or folder that is read; see ConfigSource::FileOf().
+  void VisitFile(const std::string& key, std::string* name) {
+    const bool is_given = node_.IsDefined() && node_.IsMap() && node_[key].IsDefined();
+    Visit(key, name);
+    if (is_given) *name = source_.FileOf(prefix_ + key, *name);
   }
 
   /// To be called after the last Visit. @throws ConfigError naming the first key that is unknown or

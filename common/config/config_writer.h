@@ -29,6 +29,7 @@ class ConfigWriter {
   void Visit(const std::string& key, T* value, const Rule<T>&) {
     Visit(key, value);
   }
+  void VisitFile(const std::string& key, std::string* name) { Visit(key, name); }
 
   const YAML::Node& node() const { return node_; }
 

@@ -207,6 +207,18 @@ RigDescription LoadRigFile(const std::string& filename) {
   });
 }
 
+void RequireRigFile(const std::string& filename) {
+  if (filename.empty()) return;
+  if (!std::filesystem::is_regular_file(filename)) {
+    throw FieldError("rig_file", filename, "must be a file that exists, or empty");
+  }
+  try {
+    LoadRigFile(filename);
+  } catch (const std::invalid_argument& e) {
+    throw FieldError("rig_file", filename, e.what());
+  }
+}
+
 RigDescription ParseRig(const std::string& text, const std::string& name,
                         const ReadFile& read_file) {
   return FromSource(ConfigSource::FromText(text, name), read_file);

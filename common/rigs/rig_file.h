@@ -20,6 +20,10 @@ namespace visavis {
 /// @throws ConfigError: one line with file, line, key, value and rule.
 RigDescription LoadRigFile(const std::string& filename);
 
+/// Of a configuration's key rig_file: what it names, unless empty, is a rig.yaml that can be read,
+/// with the arm's file. @throws FieldError naming the file and what is wrong with it.
+void RequireRigFile(const std::string& filename);
+
 /// Reads the text of a rig.yaml. @param name stands for it in errors. @param read_file gives the
 /// text of the file that arm.urdf names; throws std::runtime_error where there is none.
 RigDescription ParseRig(const std::string& text, const std::string& name,

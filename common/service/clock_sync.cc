@@ -6,6 +6,7 @@ namespace visavis {
 
 ClockSync InterpretClock(int result, const timex& time) {
   ClockSync sync;
+  sync.known = result >= 0;
   sync.synchronised = result >= 0 && result != TIME_ERROR && !(time.status & STA_UNSYNC);
   const double unit_s = time.status & STA_NANO ? 1e-9 : 1e-6;
   sync.offset_s = sync.synchronised ? 1e-6 * static_cast<double>(time.esterror) +

@@ -9,6 +9,7 @@ namespace visavis {
 /// How well the host's clock is synchronised, as the kernel knows it from who disciplines the clock
 /// (chrony, systemd-timesyncd, ptp4l with phc2sys).
 struct ClockSync {
+  bool known{false};  ///< the kernel answered; false: nothing below is known
   bool synchronised{false};
   /// [s] estimated error and what is still being slewed away; NaN: not synchronised, so unknown.
   double offset_s;

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "common/service/clock_sync.h"
-
 namespace visavis {
 namespace {
 
@@ -40,6 +38,12 @@ double ResidentMegabytes() {
 }
 
 }  // namespace
+
+std::int8_t ClockStateOf(const ClockSync& clock) {
+  if (!clock.known) return service_status_t::CLOCK_UNKNOWN;
+  return clock.synchronised ? service_status_t::CLOCK_SYNCHRONISED
+                            : service_status_t::CLOCK_UNSYNCHRONISED;
+}
 
 StatusReporter::StatusReporter(const std::string& service, const std::string& version) {
   message_.service = service;
@@ -118,8 +122,7 @@ void StatusReporter::ReadProcess(std::int64_t now_us) {
   message_.memory_mb = ResidentMegabytes();
 
   const ClockSync clock = ReadClockSync();
-  message_.clock_state = clock.synchronised ? service_status_t::CLOCK_SYNCHRONISED
-                                            : service_status_t::CLOCK_UNSYNCHRONISED;
+  message_.clock_state = ClockStateOf(clock);
   message_.clock_offset_s = clock.offset_s;
 }
 

@@ -5,9 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "common/service/clock_sync.h"
 #include "visavis/service_status_t.hpp"
 
 namespace visavis {
+
+/// CLOCK_* of service_status_t and arm_state_t.
+std::int8_t ClockStateOf(const ClockSync& clock);
 
 /// Collects what a service says of itself and makes the service_status_t of each second.
 /// Recording a processed input allocates nothing.

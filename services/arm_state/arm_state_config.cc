@@ -1,8 +1,10 @@
 #include "services/arm_state/arm_state_config.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "common/config/config_error.h"
+#include "common/rigs/rig_file.h"
 #include "services/arm_state/sources/source_list.h"
 
 namespace visavis {
@@ -34,6 +36,9 @@ void ArmStateConfig::ValidateOrThrow() const {
   if (joint_names.size() > static_cast<std::size_t>(kMaxArmJoints))
     throw FieldError("joint_names", std::to_string(joint_names.size()) + " names",
                      "must be at most " + std::to_string(kMaxArmJoints));
+  if (!csv_file.empty() && !std::filesystem::is_regular_file(csv_file))
+    throw FieldError("csv_file", csv_file, "must be a file that exists");
+  RequireRigFile(rig_file);
 }
 
 StateOptions ArmStateConfig::States() const {

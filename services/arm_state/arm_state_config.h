@@ -15,8 +15,8 @@ struct ArmStateConfig {
   void Serialize(A* a) {
     a->Visit("source", &source, SourceName());
     a->Visit("channel", &channel, ChannelPrefix());
-    a->Visit("csv_file", &csv_file);
-    a->Visit("rig_file", &rig_file);
+    a->VisitFile("csv_file", &csv_file);
+    a->VisitFile("rig_file", &rig_file);
     a->Visit("joint_names", &joint_names);
     a->Visit("times", &times, OneOf({"host", "mapped"}));
     a->Visit("velocities", &velocities, OneOf({"source", "differentiated"}));

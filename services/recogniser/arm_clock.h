@@ -16,13 +16,14 @@ class ArmClock {
   /// @return whether it may be used.
   bool Accepts(double offset_s);
 
-  /// Why the last one was refused, with the rule and what mends it; empty: it was not.
-  std::string complaint() const;
+  /// Why the last one was refused, with the rule and what mends it; empty: it was not. Names the
+  /// first offset of those that are refused in a row, so that it is one complaint.
+  const std::string& complaint() const { return complaint_; }
   long num_refused() const { return num_refused_; }
 
  private:
   double bound_ms_;
-  double refused_ms_{0};  // of the last one; 0: it was accepted
+  std::string complaint_;
   long num_refused_{0};
 };
 

@@ -1,9 +1,9 @@
 #include "services/recogniser/recogniser_config.h"
 
-#include <filesystem>
 #include <stdexcept>
 
 #include "common/config/config_error.h"
+#include "common/rigs/rig_file.h"
 #include "services/recogniser/chosen_head.h"
 #include "services/recogniser/fitness_kernel.h"
 
@@ -25,9 +25,7 @@ void RecogniserConfig::ValidateOrThrow() const {
   refined.ValidateOrThrow("refined.");
   head.ValidateOrThrow("head.");
   RefinedHead();
-  if (!rig_file.empty() && !std::filesystem::exists(rig_file)) {
-    throw FieldError("rig_file", rig_file, "must be a file that exists, or empty");
-  }
+  RequireRigFile(rig_file);
   if (simd != "auto" &&
       ("," + std::string(SimdTargets()) + ",").find("," + simd + ",") == std::string::npos) {
     throw FieldError("simd", simd, std::string("must be auto or one of ") + SimdTargets());

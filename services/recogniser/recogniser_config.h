@@ -45,7 +45,7 @@ struct RecogniserConfig {
     a->Visit("arm_clock_bound_ms", &arm_clock_bound_ms, InRange(0.0, 10000.0, "ms"));
     a->Visit("seed", &seed, InRange<std::int64_t>(0, 1'000'000'000));
     a->Visit("simd", &simd);
-    a->Visit("rig_file", &rig_file);
+    a->VisitFile("rig_file", &rig_file);
     a->Visit("population_every", &population_every, InRange(0, 1000000));
     a->Visit("search", &search);
     a->Visit("start", &start);

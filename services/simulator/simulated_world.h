@@ -21,7 +21,7 @@ struct SceneConfig {
   template <typename A>
   void Serialize(A* a) {
     a->Visit("subject", &subject);
-    a->Visit("mesh_file", &mesh_file);
+    a->VisitFile("mesh_file", &mesh_file);
     a->Visit("mesh_scale", &mesh_scale, InRange(1e-6, 1e6, "m per unit"));
     a->Visit("mesh_y_up", &mesh_y_up);
     a->Visit("mesh_origin_m", &mesh_origin_m);

@@ -3,12 +3,14 @@
 #include <filesystem>
 
 #include "common/config/config_error.h"
+#include "common/rigs/rig_file.h"
 
 namespace visavis {
 
 void SimulatorConfig::ValidateOrThrow() const {
-  if (!rig_file.empty() && !std::filesystem::exists(rig_file)) {
-    throw FieldError("rig_file", rig_file, "must be a file that exists, or empty");
+  RequireRigFile(rig_file);
+  if (!scene.mesh_file.empty() && !std::filesystem::is_regular_file(scene.mesh_file)) {
+    throw FieldError("scene.mesh_file", scene.mesh_file, "must be a file that exists, or empty");
   }
   scenario.ValidateOrThrow();
   scene.ValidateOrThrow();

@@ -19,7 +19,7 @@ struct SimulatorConfig {
     a->Visit("sensor", &sensor);
     a->Visit("seed", &seed, InRange<std::int64_t>(0, 1'000'000'000));
     a->Visit("seconds", &seconds, InRange(0.0, 1e6, "s"));
-    a->Visit("rig_file", &rig_file);
+    a->VisitFile("rig_file", &rig_file);
     a->Visit("frame_rate_hz", &frame_rate_hz, InRange(1.0, 200.0, "Hz"));
     a->Visit("arm_rate_hz", &arm_rate_hz, InRange(10.0, 1000.0, "Hz"));
     a->Visit("readout_ms", &readout_ms, InRange(0.0, 100.0, "ms"));

@@ -21,6 +21,8 @@ std::string Supports(const FoundCamera& found) {
   try {
     AravisConnection connection(found);
     ArvCamera* camera = connection.camera();
+    // Asked by somebody else some cameras take seconds, each for every feature.
+    if (!connection.TakeControl()) return "  another program holds it\n";
     guint count = 0;
     const char** formats =
         arv_camera_dup_available_pixel_formats_as_strings(camera, &count, nullptr);

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "common/config/config_error.h"
+#include "common/rigs/rig_file.h"
 
 namespace visavis {
 namespace {
@@ -48,7 +49,7 @@ void StereoCaptureConfig::ValidateOrThrow() const {
                      "must be below half a period, " + ToText(half_period_ms) +
                          " ms, or neighbours would pass for a pair");
   }
-  if (!rig_file.empty()) RequireFile("rig_file", rig_file);
+  RequireRigFile(rig_file);
   if (source == "folder") {
     RequireFile("folder", folder.empty() ? "''" : folder);
     return;

@@ -17,12 +17,12 @@ struct StereoCaptureConfig {
     a->Visit("left", &left);
     a->Visit("right", &right);
     a->Visit("camera", &camera);
-    a->Visit("folder", &folder);
+    a->VisitFile("folder", &folder);
     a->Visit("loop", &loop);
     a->Visit("start", &start, OneOf({"wait", "require"}));
     a->Visit("tolerance_ms", &tolerance_ms, InRange(0.0, 5000.0, "ms"));
     a->Visit("single_images", &single_images);
-    a->Visit("rig_file", &rig_file);
+    a->VisitFile("rig_file", &rig_file);
     a->Visit("image_format", &image_format, OneOf({"raw", "jpeg"}));
     a->Visit("jpeg_quality", &jpeg_quality, InRange(1, 100));
   }

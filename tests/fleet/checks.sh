@@ -11,6 +11,20 @@ LogsOfAll() {
     sort -c -s -k1,1 <<<"$words"
 }
 
+# Who may not read a machine's journal is told, and does not take silence for peace.
+LogsForMembers() {
+  local words code=0
+  LabRun camera gpasswd -d pilot systemd-journal
+  LabRun camera pkill -u pilot sshd # a connection keeps the groups that it began with
+  words=$(Operate "visavis-fleet logs" 2>&1) && code=1
+  LabRun camera gpasswd -a pilot systemd-journal
+  LabRun camera pkill -u pilot sshd
+  printf '%s\n' "$words"
+  grep -q '^system.conf:5: host camera: logs: "pilot": must be a member of systemd-journal there' <<<"$words" &&
+    grep -q '^[^ ]* storage ' <<<"$words" || code=1
+  return "$code"
+}
+
 # Following ends with the signal that ends it, and leaves nobody reading.
 FollowsLogs() {
   local words
@@ -67,6 +81,9 @@ OtherRobot() {
 
 NotDeployed() {
   local code=0
+  sed 's/ recogniser.yaml$//' "$robot/system.conf" >"$robot/fewer.conf"
+  Refused '^fewer.conf:[0-9]+: host compute: /etc/visavis/fleet: .*visavis-fleet deploy' \
+    "--system fewer.conf start" || code=1
   echo 'arm_wait_ms: 14' >>"$robot/recogniser.yaml"
   Refused '^system.conf:[0-9]+: host compute: /etc/visavis/fleet: .*visavis-fleet deploy' || code=1
   return "$code"
@@ -95,15 +112,57 @@ MendsRoute() {
   Operate "visavis-fleet doctor 2>&1 | grep -E 'storage +messages +ok +of compute'"
 }
 
-# A name that nobody knows, and a user who may not log in: neither is a machine that is off.
+# A service that takes its configuration and does not start: its own words say why.
+FailsToStart() {
+  local words
+  printf '%s\n' 'source: aravis' 'start: require' >"$robot/no_camera.yaml"
+  sed 's/ stereo_capture.yaml$/ no_camera.yaml/' "$robot/recorded.conf" >"$robot/no_camera.conf"
+  words=$(Operate "visavis-fleet --system no_camera.conf deploy && visavis-fleet --system no_camera.conf start" 2>&1) && return 1
+  printf '%s\n' "$words"
+  Operate "visavis-fleet stop && visavis-fleet deploy" &&
+    grep -q '^camera: start: visavis-stereo-capture: start: require: left camera: left.device: LEFT' <<<"$words" &&
+    grep -q '^compute  *started arm-state, recogniser' <<<"$words"
+}
+
+# A name that nobody knows, a machine that is not known yet, and a user who may not log in: none is a
+# machine that is off.
 BadHosts() {
   local code=0
   sed 's/10.77.0.1$/nowhere.invalid/' "$robot/system.conf" >"$robot/nowhere.conf"
   Refused '^nowhere.conf:5: host camera: address: "nowhere.invalid": must be an address or a name' \
     "--system nowhere.conf start" || code=1
+  # For another user, as this one is connected.
+  sed '/10.77.0.[23]$/d; s/compute\|storage/camera/; $auser root
+    s/=accept-new/=yes\nssh_option UserKnownHostsFile=\/dev\/null/' \
+    "$robot/system.conf" >"$robot/unknown.conf"
+  Refused '^unknown.conf:6: host camera: login: "root@10.77.0.1": must be a machine that ssh knows, log in once by hand: ssh root@10.77.0.1' \
+    "--system unknown.conf start" || code=1
   sed '/10.77.0.[23]$/d; s/compute\|storage/camera/; $auser nobody' "$robot/system.conf" >"$robot/nobody.conf"
   Refused '^nobody.conf:5: host camera: login: "nobody@10.77.0.1": must be possible with a key' \
     "--system nobody.conf start" || code=1
+  return "$code"
+}
+
+# A machine that goes by a name of multicast DNS has no address while it is off.
+OffByName() {
+  sed 's/10.77.0.1$/camera.local/' "$robot/system.conf" >"$robot/local.conf"
+  Says "^local.conf:5: host camera (camera.local): is off or cannot be reached" \
+    Operate "visavis-fleet --system local.conf start" &&
+    Operate "visavis-fleet --system local.conf status | grep -E '^logger +storage +active'" &&
+    Operate "visavis-fleet stop"
+}
+
+# One machine by two names, and one whose package lacks a service: as on a processor without Embree.
+BadMachines() {
+  local code=0
+  { sed -n '/^lcm_url\|^prefix\|^ssh_option\|^host *storage\|^logger/p' "$robot/system.conf"
+    echo "recogniser localhost"; } >"$robot/twice.conf"
+  Refused '^twice.conf:6: host localhost: host name: "storage": is that of storage too: ' \
+    "--system twice.conf deploy" || code=1
+  LabRun camera sh -c 'cp /usr/lib/visavis/services /run/services; sed -i /simulator/d /usr/lib/visavis/services'
+  Refused '^system.conf:[0-9]+: host camera: service: "simulator": must be one of the package.s there .arm-state' || code=1
+  Operate "visavis-fleet stop" || code=1
+  LabRun camera cp /run/services /usr/lib/visavis/services
   return "$code"
 }
 
@@ -128,4 +187,16 @@ OneMachine() {
     grep -qE '^logger .* active .* enabled ' "$LAB/status" &&
     grep -qE '^recogniser .* active .* disabled ' "$LAB/status" &&
     Operate "$fleet stop && ! $fleet status"
+}
+
+# The package goes: with it what runs; configuration and logs stay.
+Removal() {
+  local left
+  Operate "visavis-fleet --system one.conf start" && LabRun storage dpkg --no-triggers -r visavis || return 1
+  ! LabRun storage pgrep -u visavis || return 1
+  LabRun storage test -e /etc/visavis/logger.yaml -a -e /etc/visavis/fleet/logger.yaml || return 1
+  [[ -n $(LabRun storage find /var/lib/visavis/logs -name '*.lcm') ]] || return 1
+  left=$(LabRun storage systemctl list-units --all --state=loaded --no-legend 'visavis*')
+  left+=$(LabRun storage find /usr /lib/systemd /run/systemd -xdev -iname '*visavis*' -not -path '/usr/share/doc/*')
+  [[ -z $left ]] || { echo "left: $left"; return 1; }
 }

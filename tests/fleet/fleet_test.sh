@@ -37,10 +37,10 @@ robot=$(LabDisk storage)/home/pilot/robot
 mkdir -p "$robot"
 cp "$repo"/tests/fleet/robot/* "$robot"
 mkdir -p "$(LabDisk camera)/etc/visavis"
-cp "$repo/common/rigs/demo_arm.urdf" "$(LabDisk camera)/etc/visavis"
+cp "$repo/common/rigs/demo_arm.urdf" "$robot" # rig.yaml names it, simulator.yaml names that
 cp -r "$repo/tests/data/man_static" "$(LabDisk camera)/etc/visavis"
 sed 's/640, height: 480, fx: 800, fy: 800, cx: 319.5, cy: 239.5/320, height: 240, fx: 400, fy: 400, cx: 159.5, cy: 119.5/' \
-  "$repo/common/rigs/demo_rig.yaml" >"$(LabDisk camera)/etc/visavis/rig.yaml"
+  "$repo/common/rigs/demo_rig.yaml" >"$robot/rig.yaml"
 machines=(camera compute storage)
 On() {
   local machine
@@ -139,6 +139,7 @@ Expect "status exits with 0 again" WaitFor 10 "ssh" Operate "visavis-fleet statu
 # ---- at one seat
 Expect "logs of all machines" LogsOfAll
 Expect "logs of all machines as they come" FollowsLogs
+Expect "logs are refused to who may not read them" LogsForMembers
 Expect "a service of the wrong version keeps all from starting" WrongVersion
 Expect "stop" Operate "visavis-fleet stop"
 Expect "nothing runs" Fails Operate "visavis-fleet status | grep -w active"
@@ -146,8 +147,12 @@ Expect "what was recorded on storage plays back" PlaysBack
 Expect "another robot on our group and prefix keeps all from starting" OtherRobot
 Expect "a host that nobody knows, or that lets nobody in, keeps all from starting" BadHosts
 Expect "a bad configuration is deployed nowhere" BadConfiguration
+Expect "a machine that has no address while it is off is one that is off" OffByName
+Expect "a service that does not start says why; the rest is started" FailsToStart
+Expect "a machine given twice, or without the service, keeps all from starting" BadMachines
 Expect "a system file that is not deployed keeps all from starting" NotDeployed
 Expect "one machine alone, without ssh" OneMachine
+Expect "removal ends what runs, and leaves configuration and logs" Removal
 
 if ((num_failures > 0)); then
   echo "FAIL: $num_failures"

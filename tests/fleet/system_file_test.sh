@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# system_file_test.sh REPO: what visavis-fleet makes of system files and flags, without any machine.
+# system_file_test.sh REPO BUILD: what visavis-fleet makes of system files and flags, without any
+# machine; and that it holds the rules that services and packages have.
 set -euo pipefail
-repo=${1:?the checkout}
+repo=${1:?the checkout} build=${2:?its build folder}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 num_failures=0
@@ -53,7 +54,7 @@ Refuses "a key without a value" 'system.conf:1: prefix: "": must have a value' "
 Refuses "a key twice" 'system.conf:2: prefix: "B_": must be given once, and is in line 1' \
   "prefix A_" "prefix B_" "logger localhost"
 Refuses "a prefix that is no channel's" \
-  'system.conf:1: prefix: "robot": must be 1 to 30 of A-Z, 0-9 and _, e.g. ROBOT1_' \
+  'system.conf:1: prefix: "robot": must be 1 to 31 of A-Z, 0-9 and _, e.g. ROBOT1_' \
   "prefix robot" "logger localhost"
 Refuses "a user that is none" "system.conf:1: user: \"a;b\": must be a user's name" \
   "user a;b" "logger localhost"
@@ -86,5 +87,33 @@ Uses "unknown command" 2 "launch: unknown command" launch
 Uses "a service that the file does not list" 2 "logger: must be a service that system.conf lists \(recogniser\)" start logger
 Uses "no such file" 2 "^nowhere.conf: must be a readable file" --system nowhere.conf status
 Uses "lines of what is no log" 2 "^scripts/fleet: --lines 5: |--lines 5: must be" status --lines 5
+
+# Same WHAT HERE THERE
+Same() {
+  if [[ -z $2 || $2 != "$3" ]]; then
+    printf 'FAILED: %s: "%s" here, "%s" there\n' "$1" "$2" "$3"
+    num_failures=$((num_failures + 1))
+  fi
+}
+# The prefixes that the services take, of a length.
+for length in 31 32; do
+  letters=$(head -c "$length" /dev/zero | tr '\0' A)
+  ours=yes theirs=yes
+  printf '%s\n' "prefix $letters" "logger localhost" >system.conf
+  # shellcheck source=scripts/fleet-system.sh disable=SC2034
+  (source "$repo/scripts/fleet-system.sh" && ReadSystem system.conf) 2>/dev/null || ours=no
+  "$build/bin/visavis-logger" --prefix "$letters" --check-config 2>/dev/null || theirs=no
+  Same "is a prefix of $length letters taken" "$ours" "$theirs"
+done
+Same "a prefix of 32 letters" "$ours" no
+# Every service of the package may stand in a system file.
+# shellcheck source=scripts/fleet-system.sh
+known=$(source "$repo/scripts/fleet-system.sh" && printf '%s\n' "${SERVICES[@]}")
+while IFS= read -r service; do
+  Same "$service of the package" "$(grep -xF -e "$service" <<<"$known")" "$service"
+done <"$build/scripts/packaging/services"
+# The doctor's bound for clocks, unless the robot has its own, is the recogniser's default.
+Same "the clocks' bound [ms]" "$(sed -n 's/^CLOCK_BOUND_MS=\([0-9]*\).*/\1/p' "$repo/scripts/doctor")" \
+  "$("$build/bin/visavis-recogniser" --print-config | sed -n 's/^arm_clock_bound_ms: //p')"
 if ((num_failures > 0)); then exit 1; fi
 echo "all as expected"

@@ -81,26 +81,48 @@ Equal "modes" "$(stat -c %a "$etc/fleet/" "$etc/fleet/logger.yaml" | paste -sd '
 echo 'individuals: 60' >"$files/recogniser.yaml" # the service's own word on it
 DeployRefused "visavis-recogniser: recogniser.yaml:1: individuals: 60: unknown key" Deploy recogniser.yaml
 echo 'seed: 8' >"$files/recogniser.yaml"
-# shellcheck disable=SC2016  # nothing of it must ever expand
+# shellcheck disable=SC1003,SC2016  # nothing of it must ever expand
 for line in LD_PRELOAD=/tmp/x.so 'VISAVIS_PREFIX=$(id)' 'VISAVIS_PREFIX=A B' 'export VISAVIS_PREFIX=A' \
-  ' PATH=/tmp' $'VISAVIS_PREFIX=A\\\nPATH=/tmp'; do
+  ' PATH=/tmp' $'VISAVIS_PREFIX=A\\\nPATH=/tmp' $'# a note\rPATH=/tmp' '# a note\'; do
   printf '\n%s\n' "$line" >"$files/environment"
   DeployRefused "must be LCM_DEFAULT_URL= or VISAVIS_PREFIX=" Deploy environment recogniser.yaml
 done
+printf '# a note\0\nPATH=/tmp\n' >"$files/environment"
+DeployRefused "must be LCM_DEFAULT_URL= or VISAVIS_PREFIX=" Deploy environment recogniser.yaml
+head -c 10001 /dev/zero | tr '\0' '\n' >"$files/environment"
+DeployRefused "environment: must be at most 10000 bytes" Deploy environment recogniser.yaml
 printf '# this robot\nVISAVIS_PREFIX=ROBOT1_' >"$files/environment"
 Deploy environment
 Equal "with a note" "$(Deployed)" "# this robot|VISAVIS_PREFIX=ROBOT1_"
 
-mkdir "$folder/sub"
+# What a configuration names comes along, and is what the check and the service find.
+mkdir "$folder/sub" "$files/rigs"
+printf '%s\n' 'right: {width: 640, height: 480, fx: 800, fy: 800, cx: 319.5, cy: 239.5}' \
+  'left: {width: 640, height: 480, fx: 800, fy: 800, cx: 319.5, cy: 239.5}' \
+  'X_CL: {p_m: [-0.15, 0, 0], q_wxyz: [1, 0, 0, 0]}' >"$files/rigs/rig.yaml"
+echo 'rig_file: rigs/rig.yaml' >"$files/recogniser.yaml"
+DeployRefused "visavis-recogniser: recogniser.yaml:1: rig_file: rigs/rig.yaml: must be a file" Deploy recogniser.yaml
+Deploy recogniser.yaml rigs
+Equal "with a file that it names" "$(cat "$etc/fleet/rigs/rig.yaml")" "$(cat "$files/rigs/rig.yaml")"
+Equal "its folder's mode" "$(stat -c %a "$etc/fleet/rigs")" 755
+(cd / && "$root/usr/bin/visavis-recogniser" --config "$etc/fleet/recogniser.yaml" --check-config) ||
+  Wrong "the deployed service does not find its file"
+echo 'seed: 8' >"$files/recogniser.yaml"
+Deploy environment recogniser.yaml
+Equal "without that file" "$(find "$etc/fleet/" -type f | wc -l)" 2
+
 cp "$files/recogniser.yaml" "$folder/sub"
-cp "$files/recogniser.yaml" "$files/other.yaml"
-cp "$files/recogniser.yaml" "$files/recogniser.yaml.bak"
-for name in other.yaml recogniser.yaml.bak; do
-  DeployRefused "deploy: $name: must be environment or SERVICE.yaml" Deploy "$name"
+words="must be words of letters, digits and ._+-"
+DeployRefused "../sub/recogniser.yaml: $words" Deploy -P ../sub/recogniser.yaml
+DeployRefused "/sub/recogniser.yaml: $words" Deploy -P "$folder/sub/recogniser.yaml"
+# shellcheck disable=SC2016
+for name in ../files rigs/../environment rigs/.hidden .fleet 'a b' -f '$(id)' rigs//a "$(printf '%0201d' 0)"; do
+  DeployRefused "deploy: $name: $words" Deploy --transform="s,environment,$name," -P environment
 done
-DeployRefused "../sub/recogniser.yaml: must be environment" Deploy -P ../sub/recogniser.yaml
-DeployRefused "recogniser.yaml: must be environment or SERVICE.yaml" Deploy -P "$folder/sub/recogniser.yaml"
-DeployRefused "../files: must be environment" Deploy --transform='s,environment,../files,' -P environment
+DeployRefused "deploy: ../rigs/x: $words" Deploy --transform="s,rigs,../rigs," -P rigs
+DeployRefused "deploy: logger.yaml: must be a regular file" \
+  Deploy --transform="s,environment,logger.yaml/a," environment
+DeployRefused "rigs: stands there twice" Deploy --transform="s,environment,rigs," rigs/rig.yaml environment
 rm "$files/recogniser.yaml"
 ln -s /etc/shadow "$files/recogniser.yaml"
 DeployRefused "deploy: recogniser.yaml: must be a regular file" Deploy recogniser.yaml
@@ -112,22 +134,31 @@ mkfifo "$files/recogniser.yaml"
 DeployRefused "deploy: recogniser.yaml: must be a regular file" Deploy recogniser.yaml
 rm "$files/recogniser.yaml"
 mkdir "$files/recogniser.yaml"
-DeployRefused "deploy: recogniser.yaml/: must be environment" Deploy recogniser.yaml
+DeployRefused "deploy: recogniser.yaml: must be a regular file" Deploy recogniser.yaml
 rmdir "$files/recogniser.yaml"
 DeployRefused "stands there twice" Deploy --hard-dereference environment environment
-head -c 1000001 /dev/zero | tr '\0' '#' >"$files/recogniser.yaml"
-DeployRefused "recogniser.yaml: must be at most 1000000 bytes" Deploy recogniser.yaml
+truncate -s 20000001 "$files/recogniser.yaml"
+DeployRefused "recogniser.yaml: must be at most 20000000 bytes" Deploy recogniser.yaml
 truncate -s 40G "$files/recogniser.yaml"
-DeployRefused "recogniser.yaml: must be at most 1000000 bytes" Deploy --sparse recogniser.yaml
+DeployRefused "recogniser.yaml: must be at most 20000000 bytes" Deploy --sparse recogniser.yaml
 rm "$files/recogniser.yaml"
 
 DeployRefused "stdin is empty" Bytes true
 DeployRefused "stdin must be a whole tar" Bytes echo "no tar at all"
-DeployRefused "the tar must be at most" Bytes head -c 20000000 /dev/zero
+DeployRefused "the tar must be at most" Bytes head -c 50000001 /dev/zero
 DeployRefused "not compressed" Bytes tar -C "$files" -cz environment
 Cut() { tar -C "$files" -c environment logger.yaml | head -c "$1"; }
 DeployRefused "stdin must be a whole tar" Bytes Cut 1200
 DeployRefused "stdin must be a whole tar" Bytes Cut 2048
+# Who sends nothing more keeps nobody waiting.
+mkfifo "$folder/pipe"
+"$control" deploy <"$folder/pipe" 2>/dev/null & stuck=$!
+exec 8>"$folder/pipe"
+Deploy environment
+Equal "while another deploy hangs" "$(ls "$etc/fleet/")" environment
+kill "$stuck"
+exec 8>&-
+wait "$stuck" || true
 # What a deploy that was killed left behind goes with the next; an empty one takes everything back.
 mkdir "$etc/.fleet-killed"
 Deploy -T /dev/null

@@ -241,7 +241,8 @@ TEST(ArmStateUsageTest, BadInputGetsOneLineAndExitCode2) {
     return result.err;
   };
   EXPECT_THAT(refusal({"--source", "ur5"}), HasSubstr("source: ur5: must be one of iiwa panda"));
-  EXPECT_THAT(refusal({"--set", "rig_file=/none.yaml"}), HasSubstr("/none.yaml: cannot be read"));
+  EXPECT_THAT(refusal({"--set", "rig_file=/none.yaml"}),
+              HasSubstr("/none.yaml: must be a file that exists"));
   EXPECT_THAT(refusal({"--source", "csv", "--set", "csv_file=/none.csv"}), HasSubstr("/none.csv"));
   EXPECT_THAT(RunWell({Program("arm-state"), "--print-config"}),
               AllOf(HasSubstr("source: simulator"), HasSubstr("max_gap_ms: 50")));

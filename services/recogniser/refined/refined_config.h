@@ -58,7 +58,7 @@ struct HeadChoice {
   template <typename A>
   void Serialize(A* a) {
     a->Visit("shape", &shape, OneOf({"adult", "ellipsoid", "sphere"}));
-    a->Visit("file", &file);
+    a->VisitFile("file", &file);
     a->Visit("scale", &scale, InRange(1e-9, 1e9));
     a->Visit("y_up", &y_up);
     a->Visit("origin_m", &origin_m);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "common/config/config_writer.h"
@@ -130,6 +131,39 @@ TEST(ConfigReaderTest, OverridesWinAndAreNamedInErrors) {
   EXPECT_THAT([] { LoadConfig<Config>("", {"mode"}); }, ThrowsConfigError(HasSubstr("KEY=VALUE")));
   EXPECT_THAT([] { LoadConfig<Config>("", {"nothing.at.all=1"}); },
               ThrowsConfigError(HasSubstr("--set nothing.at.all=1")));
+}
+
+struct NamesFile {
+  template <typename A>
+  void Serialize(A* a) {
+    a->VisitFile("rig_file", &rig_file);
+  }
+  std::string rig_file{"default.yaml"};
+};
+
+struct NamesFiles {
+  template <typename A>
+  void Serialize(A* a) {
+    a->Visit("inner", &inner);
+    a->VisitFile("folder", &folder);
+  }
+  void ValidateOrThrow() const {}
+  NamesFile inner;
+  std::string folder;
+};
+
+TEST(ConfigReaderTest, AFileIsRelativeToTheFileThatNamesItAndOfAFlagToWhereTheProgramRuns) {
+  const auto file = WriteFile("inner: {rig_file: rigs/a.yaml}\nfolder: /data\n");
+  auto config = LoadConfig<NamesFiles>(file);
+  EXPECT_EQ(config.inner.rig_file, std::filesystem::path(file).parent_path() / "rigs/a.yaml");
+  EXPECT_EQ(config.folder, "/data");
+  config = LoadConfig<NamesFiles>(file, {"inner={rig_file: b.yaml}", "folder=c"});
+  EXPECT_EQ(config.inner.rig_file, "b.yaml");
+  EXPECT_EQ(config.folder, "c");
+  config = LoadConfig<NamesFiles>(WriteFile("folder: ''\n"));
+  EXPECT_EQ(config.inner.rig_file, "default.yaml");
+  EXPECT_EQ(config.folder, "");
+  EXPECT_EQ(ConfigSource::FromText("{}", "beside.yaml").FileOf("folder", "c"), "c");
 }
 
 TEST(ConfigReaderTest, AMissingFileAndBrokenYamlAreNamed) {

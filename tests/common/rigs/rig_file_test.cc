@@ -100,6 +100,22 @@ TEST_F(RigFileTest, CamerasAloneAreSavedWithoutTheRest) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "arm.urdf"));
 }
 
+TEST_F(RigFileTest, AConfigurationsRigFileIsEmptyOrCanBeReadWithItsArm) {
+  const auto refusal = [](const std::string& text) {
+    return ThrowsMessage<FieldError>(HasSubstr(text));
+  };
+  EXPECT_NO_THROW(RequireRigFile(""));
+  const std::string rig = Write("rig.yaml", kCameras + kXhc + kArm);
+  EXPECT_THAT([&] { RequireRigFile(rig); }, refusal("rig_file: " + rig + ": " + rig +
+                                                    ":5: arm.urdf: robot.urdf: cannot be read"));
+  Write("robot.urdf", "<robot name='r'/>\n");
+  EXPECT_NO_THROW(RequireRigFile(rig));
+  for (const std::string& name : {folder_ / "none.yaml", folder_.path().string()}) {
+    EXPECT_THAT([&] { RequireRigFile(name); },
+                refusal("rig_file: " + name + ": must be a file that exists, or empty"));
+  }
+}
+
 TEST_F(RigFileTest, UncertaintiesAreKeptWithAndWithoutHandEyes) {
   const std::string text =
       kCameras +

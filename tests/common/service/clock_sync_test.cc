@@ -39,8 +39,10 @@ TEST(ClockSyncTest, AnUndisciplinedClockHasAnUnknownError) {
   EXPECT_FALSE(InterpretClock(TIME_ERROR, Disciplined()).synchronised);
 }
 
-TEST(ClockSyncTest, AKernelThatRefusesTheQuestionMeansUnsynchronised) {
+TEST(ClockSyncTest, OfAKernelThatRefusesTheQuestionNothingIsKnown) {
+  EXPECT_TRUE(InterpretClock(TIME_ERROR, Disciplined()).known);
   const ClockSync sync = InterpretClock(-1, Disciplined());
+  EXPECT_FALSE(sync.known);
   EXPECT_FALSE(sync.synchronised);
   EXPECT_EQ(sync.maximum_error_us, 0);
 }

@@ -122,6 +122,15 @@ TEST_F(StatusReporterTest, CpuAndMemoryAreThoseOfThisProcess) {
   EXPECT_LT(m.memory_mb, 4000);
 }
 
+TEST_F(StatusReporterTest, TheClockIsUnknownWhereTheKernelDoesNotTell) {
+  ClockSync clock;
+  EXPECT_EQ(ClockStateOf(clock), service_status_t::CLOCK_UNKNOWN);
+  clock.known = true;
+  EXPECT_EQ(ClockStateOf(clock), service_status_t::CLOCK_UNSYNCHRONISED);
+  clock.synchronised = true;
+  EXPECT_EQ(ClockStateOf(clock), service_status_t::CLOCK_SYNCHRONISED);
+}
+
 TEST_F(StatusReporterTest, TheStatusEncodes) {
   status_.SetCounter("a", 1);
   const service_status_t& m = status_.Make(kSecond);

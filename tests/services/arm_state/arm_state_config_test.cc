@@ -31,6 +31,10 @@ TEST(ArmStateConfigTest, BadValuesAreNamed) {
               refusal("channel: A: must be empty"));
   EXPECT_THAT(load({"source=csv", "csv_file=a", "times=mapped"}),
               refusal("times: mapped: must be host"));
+  EXPECT_THAT(load({"source=csv", "csv_file=/none.csv"}),
+              refusal("csv_file: /none.csv: must be a file that exists"));
+  EXPECT_THAT(load({"rig_file=/none.yaml"}),
+              refusal("rig_file: /none.yaml: must be a file that exists"));
   EXPECT_THAT(load({"channel=ARM_STATE"}),
               refusal("channel: ARM_STATE: must differ from arm_state"));
   EXPECT_THAT(load({"arm_state=STEREO_RIG"}), refusal("must differ from stereo_rig"));

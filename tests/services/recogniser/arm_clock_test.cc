@@ -47,5 +47,17 @@ TEST(ArmClockTest, TheComplaintNamesFieldValueRuleAndEndsWithTheNextGoodState) {
   EXPECT_EQ(clock.complaint(), "");
 }
 
+TEST(ArmClockTest, OffsetsThatAreRefusedInARowAreOneComplaint) {
+  ArmClock clock(5);
+  clock.Accepts(0.006);
+  const std::string first = clock.complaint();
+  clock.Accepts(-0.007);
+  EXPECT_EQ(clock.complaint(), first);
+  EXPECT_EQ(clock.num_refused(), 2);
+  clock.Accepts(0.001);
+  clock.Accepts(0.007);
+  EXPECT_THAT(clock.complaint(), HasSubstr("clock_offset_s: 0.007: "));
+}
+
 }  // namespace
 }  // namespace visavis

@@ -10,6 +10,8 @@
 #include "common/core/clock.h"
 #include "common/core/random.h"
 #include "common/gige/fake_camera.h"
+#include "services/stereo_capture/aravis_connection.h"
+#include "services/stereo_capture/sources.h"
 #include "tests/services/stereo_capture/gvsp_sender.h"
 #include "tests/support/private_network.h"
 
@@ -70,6 +72,16 @@ class AravisCameraTest : public ::testing::Test {
   std::unique_ptr<FakeCamera> fake_;
   std::unique_ptr<AravisCamera> camera_;  // after fake_: it says farewell first
 };
+
+// Aravis asks a fake camera that another holds again and again, for 8 s.
+TEST_F(AravisCameraTest, TheListTellsThatAnotherProgramHoldsTheCamera) {
+  PowerOn(WriteNumber);
+  const auto found = FindCameras("LEFT", 500, "");
+  ASSERT_EQ(found.size(), 1u);
+  AravisConnection holder(found[0]);
+  ASSERT_TRUE(holder.TakeControl());
+  EXPECT_THAT(ListCameras(), HasSubstr("LEFT at 127.0.0.1\n  another program holds it\n"));
+}
 
 TEST_F(AravisCameraTest, FramesComeInOrderWithNumberTimesAndExposure) {
   PowerOn(WriteNumber);
