@@ -13,6 +13,7 @@
 #include "services/recogniser/refined/mesh_fitness.h"
 #include "services/recogniser/refined/pose_refiner.h"
 #include "services/recogniser/refined/real_population.h"
+#include "services/recogniser/refined/refined_config.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/stereo_scene.h"
 
@@ -100,7 +101,7 @@ void BM_RefinedPagmoCmaes(benchmark::State& state) {
 }
 BENCHMARK(BM_RefinedPagmoCmaes)->Iterations(kSeeds)->Unit(benchmark::kMillisecond);
 
-// 3000 shots, then generations.
+// Shots, then generations.
 void RunOurs(benchmark::State& state, bool refine) {
   Scene& s = TheScene();
   PoseRefiner refiner({}, s.head.surface, s.head.mesh, s.head.face);
@@ -111,13 +112,12 @@ void RunOurs(benchmark::State& state, bool refine) {
     population.Restart();
     int evaluations = 0;
     const auto fitness = [&](const Vector6d& phi) {
-      if (s.fitness.GlanceAtSkin(*s.view, TransformFromPhi(phi)) < -0.5) return -4.0;
       ++evaluations;
       return s.Fitness(phi);
     };
     population.Evaluate(fitness);
     const auto shot_fitness = [&](const Vector6d& phi, double) { return fitness(phi); };
-    for (const Individual& shot : population.Shoot(3000, shot_fitness))
+    for (const Individual& shot : population.Shoot(RefinedConfig{}.search_shots, shot_fitness))
       population.Insert(shot.phi, shot.fitness);
     const auto distance = [&] {
       if (!refine) return s.Distance(population.best().phi);

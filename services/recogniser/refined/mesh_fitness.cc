@@ -68,24 +68,7 @@ MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detai
                  kHeadShift);
   }
   AddPattern(face, 2 * step);
-  // Forehead, cheeks, nose, upper lip, chin.
-  for (const auto& [x, y] : {std::pair{-0.02f, -0.019f},
-                             {0.02f, -0.019f},
-                             {-0.035f, 0.038f},
-                             {0.035f, 0.038f},
-                             {0.0f, 0.038f},
-                             {0.0f, 0.068f},
-                             {-0.03f, 0.073f},
-                             {0.03f, 0.073f},
-                             {0.0f, 0.096f}}) {
-    const Vector3f wanted(x, y, -0.085f);
-    const Vector3f& nearest = *std::min_element(
-        mesh.vertices.begin(), mesh.vertices.end(), [&](const Vector3f& a, const Vector3f& b) {
-          return (a - wanted).squaredNorm() < (b - wanted).squaredNorm();
-        });
-    skin_.Add(nearest, Vector3f::Zero(), -1, kSkinShift);  // counts whatever the pose
-  }
-  for (ScorePoints* points : {&inside_, &outside_, &skin_}) points->Pad();
+  for (ScorePoints* points : {&inside_, &outside_}) points->Pad();
 }
 
 void MeshFitness::AddPattern(const FacePoints& face, std::size_t step) {
@@ -107,18 +90,6 @@ MeshFitness::Poses MeshFitness::PosesOf(const StereoView& view, const RigidTrans
     return KernelEye(*eye.geometry, EyePose(*eye.geometry, X_CM));
   };
   return {pose(view[0]), pose(view[1])};
-}
-
-double MeshFitness::GlanceAtSkin(const StereoView& view, const RigidTransform& X_CM) const {
-  ScoreSum both;
-  const Poses poses = PosesOf(view, X_CM);
-  for (std::size_t e = 0; e < 2; ++e) {
-    if (!view[e].seen() || !view[e].scores->has_color()) continue;
-    const ScoreSum one = SumScores(poses[e], view[e].scores->view(), skin_, kSurface, -kFar);
-    both.sum += one.sum;
-    both.count += one.count;
-  }
-  return both.count > 0 ? Mean(both) : 1;
 }
 
 void MeshFitness::AddCorrelation(const StereoView& view, const Poses& poses,

@@ -44,10 +44,6 @@ class MeshFitness {
   /// shows, with the left one's agreement, is less than @p worth by 0.3, that decides alone.
   double FoundIfWorth(const StereoView& view, const RigidTransform& X_CM, double worth) const;
 
-  /// A glance at a few places of the face: mean skin score in units of 2 nats. Poses that fail it
-  /// need no evaluation. 1 on grey pictures.
-  double GlanceAtSkin(const StereoView& view, const RigidTransform& X_CM) const;
-
  private:
   using Poses = std::array<KernelEye, 2>;
 
@@ -58,7 +54,7 @@ class MeshFitness {
   void AddInside(const StereoView& view, const Poses& poses, MeshScore* score) const;
   void AddOutside(const StereoView& view, const Poses& poses, MeshScore* score) const;
 
-  ScorePoints inside_, outside_, skin_;  // skin_: a few points
+  ScorePoints inside_, outside_;
   PatternPoints pattern_;
 };
 

@@ -20,6 +20,7 @@ PreparedHead::PreparedHead(const RefinerConfig& config, const HeadGeometry& geom
 PreparedHead::PreparedHead(const RefinerConfig& config, const HeadGeometry& geometry,
                            const HeadMesh& coarse_mesh)
     : FacedHead(config, geometry),
+      shot_fitness(coarse_mesh, face, 6),
       coarse_fitness(coarse_mesh, face, 2),
       fitness(coarse_mesh, face, 1),
       contrast(coarse_mesh) {}

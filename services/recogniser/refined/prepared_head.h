@@ -23,7 +23,7 @@ struct FacedHead {
 struct PreparedHead : FacedHead {
   PreparedHead(const RefinerConfig& config, const HeadGeometry& head);
 
-  const MeshFitness coarse_fitness, fitness;
+  const MeshFitness shot_fitness, coarse_fitness, fitness;  ///< of few points, of many
   const ColorContrast contrast;
 
  private:

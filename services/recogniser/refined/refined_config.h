@@ -100,9 +100,9 @@ struct RefinedConfig {
   /// [ms] Live only: where a frame takes longer, the next ones run fewer evaluations. 0: never.
   double budget_ms{100};
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
-  int search_shots{2500};       ///< poses glanced at, in a frame without
+  int search_shots{1800};       ///< poses glanced at, in a frame without
   int search_evaluations{200};  ///< of the fitness by the GA after them
-  int search_starts{5};         ///< best distinct individuals that are refined then
+  int search_starts{4};         ///< best distinct individuals that are refined then
   int iterations{4};            ///< Gauss-Newton, in a frame with a track
   int search_iterations{8};     ///< Gauss-Newton, of each start
   int learned_views{20};        ///< of a head, that its shape and looks are learned from; 0: never

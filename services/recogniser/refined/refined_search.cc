@@ -9,9 +9,8 @@
 namespace visavis {
 namespace {
 
-constexpr double kLeastGlance = -0.5;  ///< below: not worth an evaluation
-constexpr double kHopeless = -3;       ///< fitness then
-constexpr double kContrastWeight = 2;  ///< in the search's fitness, of 0 to 1
+constexpr double kRejectedFitness = -6;  ///< of a place that proved to be no face
+constexpr double kContrastWeight = 2;    ///< in the search's fitness, of 0 to 1
 constexpr double kRejected_m = 0.05, kRejectedDepth_m = 0.15;
 constexpr std::size_t kMostRejected = 12;
 constexpr int kForgiveEvery = 4;  ///< searches in a row
@@ -19,7 +18,7 @@ constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
 constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17;
 constexpr std::array<double, 4> kTurns_rad = {0.3, -0.3, 0.55, -0.55};
 constexpr int kTurnedReach_px = 9;
-constexpr int kFirstIterations = 4;  ///< of each start
+constexpr int kFirstIterations = 3, kTurnedIterations = 4;  ///< of each start
 constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;   ///< best places that are verified
@@ -37,40 +36,37 @@ bool AreOnePlace(const RigidTransform& a, const RigidTransform& b) {
 }  // namespace
 
 RefinedEstimator::Candidate RefinedEstimator::Search() {
-  const auto unless_hopeless = [&](const Vector6d& phi, const auto& evaluate) {
-    if (WasRejected(phi)) return 2 * kHopeless;
-    const RigidTransform X = TransformFromPhi(phi);
-    const double glance = head().coarse_fitness.GlanceAtSkin(view_, X);
-    if (glance < kLeastGlance) return kHopeless + glance;
+  const auto unless_rejected = [&](const Vector6d& phi, const auto& evaluate) {
+    if (WasRejected(phi)) return kRejectedFitness;
     ++estimate_.evaluations;
-    return evaluate(X);
+    return evaluate(TransformFromPhi(phi));
   };
   const auto with_contrast = [&](double found, const RigidTransform& X) {
     return found + kContrastWeight * Contrast(X);
   };
   const auto fitness = [&](const Vector6d& phi) {
-    return unless_hopeless(phi, [&](const RigidTransform& X) {
+    return unless_rejected(phi, [&](const RigidTransform& X) {
       return with_contrast(head().coarse_fitness.Look(view_, X).found(), X);
     });
   };
   // A child is taken in only where it beats the worst.
   const auto child_fitness = [&](const Vector6d& phi) {
-    return unless_hopeless(phi, [&](const RigidTransform& X) {
+    return unless_rejected(phi, [&](const RigidTransform& X) {
       const double worth = population_.individuals().back().fitness - kContrastWeight;
       const double found = head().coarse_fitness.FoundIfWorth(view_, X, worth);
       return found < worth ? found : with_contrast(found, X);
     });
   };
   const auto shot_fitness = [&](const Vector6d& phi, double worth) {
-    return unless_hopeless(phi, [&](const RigidTransform& X) {
-      return head().coarse_fitness.FoundIfWorth(view_, X, worth);
+    return unless_rejected(phi, [&](const RigidTransform& X) {
+      return head().shot_fitness.FoundIfWorth(view_, X, worth);
     });
   };
   population_.Evaluate(fitness);
   const RefinedConfig& r = settings_.refined;
   for (const Individual& shot :
        population_.Shoot(Lowered(r.search_shots, effort_.searching, kFewestShots), shot_fitness)) {
-    if (shot.fitness <= kHopeless) continue;
+    if (shot.fitness == kRejectedFitness) continue;
     population_.Insert(shot.phi, with_contrast(shot.fitness, TransformFromPhi(shot.phi)));
   }
   const int evaluations = Lowered(r.search_evaluations, effort_.searching, kFewestEvaluations);
@@ -266,7 +262,7 @@ RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candida
   std::optional<Candidate> turned;
   const auto consider = [&](const Eigen::Matrix3d& R_CM) {
     const Candidate other = RefineFrom(MakeTransform(R_CM, X.translation()), nullptr,
-                                       kFirstIterations, kTurnedReach_px);
+                                       kTurnedIterations, kTurnedReach_px);
     if (IsPlausible(other.refined.X_CM) && (!turned || other.merit() > turned->merit()))
       turned = other;
   };

@@ -21,9 +21,6 @@ class MeshFitnessTest : public ::testing::Test {
   MeshScore ScoreAside(const Vector6d& aside) const {
     return fitness_.Evaluate(view_, TransformFromPhi(kTruth + aside));
   }
-  double GlanceAside(const Vector6d& aside) const {
-    return fitness_.GlanceAtSkin(view_, TransformFromPhi(kTruth + aside));
-  }
 
   MeshScene scene_;
   MeshFitness fitness_;
@@ -169,33 +166,14 @@ TEST(MeshScoreTest, ColoursRoundTheHeadCountAgainstItDownToALimit) {
   EXPECT_EQ(score.total(), 0);
 }
 
-TEST_F(MeshFitnessTest, AGlanceIsPositiveOnTheFaceAndNegativeFarFromIt) {
-  EXPECT_GT(GlanceAside(Vector6d::Zero()), 0.8);
-  EXPECT_GT(GlanceAside(PhiOf(15, 10, 40, 5, 5, 5)), 0.5);
-  for (const Vector6d& aside :
-       {PhiOf(-250, 0, 0, 0, 0, 0), PhiOf(200, 0, 0, 0, 0, 0), PhiOf(0, -200, 0, 0, 0, 0)}) {
-    EXPECT_LT(GlanceAside(aside), -0.3) << aside.transpose();
-  }
-}
-
-TEST_F(MeshFitnessTest, AGlanceOutsideOfThePictureTellsNothing) {
-  EXPECT_EQ(GlanceAside(PhiOf(3000, 0, 0, 0, 0, 0)), 0);
-}
-
-TEST_F(MeshFitnessTest, AGlanceAtAGrayPictureLetsEveryPosePass) {
-  scene_.ShowGray(TransformFromPhi(kTruth), FeaturedHead);
-  EXPECT_EQ(GlanceAside(Vector6d::Zero()), 1);
-  EXPECT_EQ(GlanceAside(PhiOf(-250, 0, 0, 0, 0, 0)), 1);
-}
-
 TEST_F(MeshFitnessTest, EvaluatingAllocatesNothing) {
   if (NumMallocs() < 0) GTEST_SKIP() << "a sanitizer owns the allocator";
   const RigidTransform X_CM = TransformFromPhi(kTruth);
   const std::int64_t before = NumMallocs();
-  const MeshScore score = fitness_.Evaluate(view_, X_CM);
-  const double glance = fitness_.GlanceAtSkin(view_, X_CM);
+  const double looked = fitness_.Look(view_, X_CM).found();
+  const double found = fitness_.FoundIfWorth(view_, X_CM, 0);
   EXPECT_EQ(NumMallocs(), before);
-  EXPECT_GT(score.total() + glance, 0);
+  EXPECT_NEAR(found, looked, 1e-9);
 }
 
 }  // namespace

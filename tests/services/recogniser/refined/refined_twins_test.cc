@@ -83,7 +83,7 @@ TEST_F(RefinedTwinsTest, EverySimdTargetGivesTheSameBits) {
     SelectSimdTarget("auto");
     scene_.Show(TransformFromPhi(kTruth), GrainyHead);
     const MeshScore score = fitness.Evaluate(view_, X_CM);
-    const double glance = fitness.GlanceAtSkin(view_, X_CM);
+    const double found = fitness.FoundIfWorth(view_, X_CM, 0);
     const Refined refined = refiner.Refine(view_, X_CM, nullptr, 4, 9);
     for (const std::string& target : ListSimdTargets()) {
       SelectSimdTarget(target.c_str());
@@ -92,7 +92,7 @@ TEST_F(RefinedTwinsTest, EverySimdTargetGivesTheSameBits) {
       EXPECT_EQ(other.inside, score.inside) << target;
       EXPECT_EQ(other.outside, score.outside) << target;
       EXPECT_EQ(other.ncc, score.ncc) << target;
-      EXPECT_EQ(fitness.GlanceAtSkin(view_, X_CM), glance) << target;
+      EXPECT_EQ(fitness.FoundIfWorth(view_, X_CM, 0), found) << target;
       const Refined again = refiner.Refine(view_, X_CM, nullptr, 4, 9);
       EXPECT_EQ(again.X_CM.matrix(), refined.X_CM.matrix()) << target;
       EXPECT_EQ(again.information, refined.information) << target;
