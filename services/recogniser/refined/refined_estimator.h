@@ -91,6 +91,8 @@ class RefinedEstimator final : public Estimator {
   std::optional<Candidate> KnownAmongCandidates();
   Candidate BestVerified();
   Candidate TryTurned(const Candidate& candidate);
+  Candidate TryEveryTurn(const Candidate& candidate);
+  Candidate BestTurned(const Candidate& candidate, const std::vector<Eigen::Matrix3d>& turns);
   /// What remains of @p candidate when the colours are learned from it: of a head more than before,
   /// of a chance likeness less. The colour models are left as learned.
   Candidate Verify(const Candidate& candidate);
@@ -99,6 +101,8 @@ class RefinedEstimator final : public Estimator {
   bool BothEyes() const { return view_[0].seen() && view_[1].seen(); }
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
+  /// Its colours are a head's, whatever its face is.
+  bool IsHead(const Candidate& candidate) const;
   bool IsPromising(const Candidate& candidate) const;
   bool IsKnownFace(const Candidate& candidate, double least_texture_ncc) const;
   double FindTextureNcc() const {

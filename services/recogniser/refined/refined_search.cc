@@ -15,7 +15,7 @@ constexpr double kRejected_m = 0.05, kRejectedDepth_m = 0.15;
 constexpr std::size_t kMostRejected = 12;
 constexpr int kForgiveEvery = 4;  ///< searches in a row
 constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
-constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17;
+constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17, kFar_rad = 0.4;
 constexpr std::array<double, 4> kTurns_rad = {0.3, -0.3, 0.55, -0.55};
 constexpr int kTurnedReach_px = 9;
 constexpr int kFirstIterations = 3, kTurnedIterations = 4;  ///< of each start
@@ -242,7 +242,15 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);
-  return found;
+  if (IsFace(found) || !IsHead(found)) return found;
+  found = TryEveryTurn(found);
+  return IsFace(found) ? found : Verify(found);
+}
+
+bool RefinedEstimator::IsHead(const Candidate& c) const {
+  const EvidenceConfig& e = settings_.refined.evidence;
+  return c.score.has_color && IsPlausible(c.refined.X_CM) && c.score.inside > e.lock_inside &&
+         c.score.outside < e.lock_outside;
 }
 
 // All but the colours speak for a face, and they do not speak against it: they need more learning.
@@ -254,25 +262,43 @@ bool RefinedEstimator::IsPromising(const Candidate& c) const {
 }
 
 // A face seen askew may have been fitted upside down into its own features: turned starts with the
-// colours that are now known tell. A few steps for all of them, the rest for the best.
+// colours that are now known tell.
 RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candidate) {
+  const Eigen::Matrix3d& R_CM = candidate.refined.X_CM.linear();
+  const Eigen::Vector3d angles = AnglesFromRotation(R_CM);
+  std::vector<Eigen::Matrix3d> turns = {RotationFromAngles({angles[0], -angles[1], angles[2]}),
+                                        RotationFromAngles({angles[0], angles[1], -angles[2]})};
+  for (const double turn : kTurns_rad) {
+    turns.push_back(R_CM * ExpRotation({turn, 0, 0}));
+    turns.push_back(R_CM * ExpRotation({0, turn, 0}));
+  }
+  return BestTurned(candidate, turns);
+}
+
+// A head it is, but its face was not seen: it may look anywhere.
+RefinedEstimator::Candidate RefinedEstimator::TryEveryTurn(const Candidate& candidate) {
+  const Eigen::Vector3d angles = AnglesFromRotation(candidate.refined.X_CM.linear());
+  std::vector<Eigen::Matrix3d> turns;
+  for (const double nod : {-kFar_rad, 0.0, kFar_rad}) {
+    for (const double yaw : {-kFar_rad, 0.0, kFar_rad})
+      turns.push_back(RotationFromAngles({angles[0], nod, yaw}));
+  }
+  return BestTurned(candidate, turns);
+}
+
+// A few steps for all of them, the rest for the best.
+RefinedEstimator::Candidate RefinedEstimator::BestTurned(
+    const Candidate& candidate, const std::vector<Eigen::Matrix3d>& turns) {
   const RigidTransform X = candidate.refined.X_CM;
   if (!X.matrix().allFinite()) return candidate;
   BuildMaps(&X);
   std::optional<Candidate> turned;
-  const auto consider = [&](const Eigen::Matrix3d& R_CM) {
+  for (const Eigen::Matrix3d& R_CM : turns) {
     const Candidate other = RefineFrom(MakeTransform(R_CM, X.translation()), nullptr,
                                        kTurnedIterations, kTurnedReach_px);
     if (IsPlausible(other.refined.X_CM) && (!turned || other.merit() > turned->merit()))
       turned = other;
-  };
-  for (const double turn : kTurns_rad) {
-    consider(X.linear() * ExpRotation({turn, 0, 0}));
-    consider(X.linear() * ExpRotation({0, turn, 0}));
   }
-  const Eigen::Vector3d angles = AnglesFromRotation(X.linear());
-  consider(RotationFromAngles({angles[0], -angles[1], angles[2]}));
-  consider(RotationFromAngles({angles[0], angles[1], -angles[2]}));
   if (!turned) return candidate;
   turned = RefineFrom(turned->refined.X_CM, nullptr, settings_.refined.search_iterations,
                       kTurnedReach_px);
