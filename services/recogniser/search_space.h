@@ -54,6 +54,7 @@ struct SearchSpace {
   static SearchSpace FromConfig(const SearchSpaceConfig& config);
 
   Vector6d range() const { return max - min; }
+  Vector6d middle() const { return 0.5 * (min + max); }
   /// [m] along the optical axis, of the middle.
   double distance() const { return 0.5 * (min[2] + max[2]); }
   Vector6d Clamp(const Vector6d& phi) const { return phi.cwiseMax(min).cwiseMin(max); }

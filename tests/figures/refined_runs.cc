@@ -1,5 +1,5 @@
 // Runs the refined estimator over logs of one subject, from an unknown pose, and prints a line for
-// each. Usage: refined_runs [--head head.yaml] SEED REFERENCE.lcm LOG.lcm ...
+// each. Usage: refined_runs [--head head.yaml] [--set KEY=VALUE ...] SEED REFERENCE.lcm LOG.lcm ...
 //
 // The reference log serves for nothing but the head offset: where the truth's head frame lies in
 // the model's is a matter of definition, and constant for a subject. Columns: log; frames with the
@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/config/config_reader.h"
 #include "common/core/clock.h"
 #include "services/recogniser/background_thread.h"
 #include "services/recogniser/head_file.h"
@@ -42,10 +43,9 @@ struct Frame {
   double ms;
 };
 
-std::vector<Frame> Run(const std::string& log, std::uint64_t seed, const HeadGeometry& head) {
+std::vector<Frame> Run(const std::string& log, const RefinedSettings& settings,
+                       const HeadGeometry& head) {
   LogPlayer player(log);
-  RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
-  settings.seed = seed;
   BackgroundThread background(true);
   RefinedEstimator estimator(settings, head, player.rig(), &background);
   StageTimer timer(&MonotonicSeconds);
@@ -154,23 +154,36 @@ void PrintRow(const std::string& log, const std::vector<Frame>& frames,
 }  // namespace visavis
 
 int main(int argc, char* argv[]) {
-  std::vector<std::string> arguments(argv + 1, argv + argc);
+  std::vector<std::string> logs, sets;
   std::string head_file;
-  if (arguments.size() > 1 && arguments[0] == "--head") {
-    head_file = arguments[1];
-    arguments.erase(arguments.begin(), arguments.begin() + 2);
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool is_flag = argument == "--head" || argument == "--set";
+    if (is_flag && i + 1 < argc) {
+      argument == "--head" ? head_file = argv[++i] : sets.emplace_back(argv[++i]);
+    } else {
+      logs.push_back(argument);
+    }
   }
-  if (arguments.size() < 3) {
-    std::fputs("usage: refined_runs [--head head.yaml] SEED REFERENCE.lcm LOG.lcm ...\n", stderr);
+  if (logs.size() < 3) {
+    std::fputs(
+        "usage: refined_runs [--head head.yaml] [--set KEY=VALUE ...] SEED REFERENCE.lcm LOG.lcm "
+        "...\n",
+        stderr);
     return 2;
   }
   try {
+    visavis::RecogniserConfig config;
+    const visavis::ConfigSource source("", sets);
+    visavis::ConfigReader reader(source, source.root(), "");
+    config.Serialize(&reader);
+    auto settings = config.RefinedSettings();
+    settings.seed = static_cast<std::uint64_t>(std::max(0, std::atoi(logs[0].c_str())));
     using visavis::HeadGeometry;
     const HeadGeometry head = head_file.empty() ? HeadGeometry{} : visavis::LoadHeadFile(head_file);
-    const auto seed = static_cast<std::uint64_t>(std::max(0, std::atoi(arguments[0].c_str())));
-    const auto X_MT = visavis::OffsetOf(visavis::Run(arguments[1], seed, head), 0);
-    for (std::size_t i = 2; i < arguments.size(); ++i) {
-      visavis::PrintRow(arguments[i], visavis::Run(arguments[i], seed, head), X_MT);
+    const auto X_MT = visavis::OffsetOf(visavis::Run(logs[1], settings, head), 0);
+    for (std::size_t i = 2; i < logs.size(); ++i) {
+      visavis::PrintRow(logs[i], visavis::Run(logs[i], settings, head), X_MT);
     }
     return 0;
   } catch (const std::exception& e) {

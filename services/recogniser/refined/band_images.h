@@ -17,7 +17,7 @@ namespace visavis {
 /// integers: the same bits on every SIMD target.
 class BandImages {
  public:
-  /// Allocates for pictures of @p width x @p height px.
+  /// Allocates for pictures of up to @p width x @p height px.
   BandImages(int width, int height);
 
   /// Computes both bands within @p box, whose borders must be multiples of 8. No allocation.

@@ -77,6 +77,12 @@ HeadLearner::HeadLearner(const RefinerConfig& config, const StereoRig& rig, doub
 
 HeadLearner::~HeadLearner() = default;
 
+void HeadLearner::SetDistance(double distance_m) {
+  if (distance_m == distance_m_ || num_views() > 0) return;
+  distance_m_ = distance_m;
+  pair_ = WorkingPair(rig_, distance_m);
+}
+
 void HeadLearner::Forget() {
   work_.reset();  // what is under way keeps its own
   sides_.Forget();

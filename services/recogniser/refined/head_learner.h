@@ -25,6 +25,9 @@ class HeadLearner {
               const HeadGeometry& start, int most_views, Background* background);
   ~HeadLearner();
 
+  /// Where the head is expected: views are kept at the resolution that suits it. Holds from the
+  /// next head on where views of this one were taken.
+  void SetDistance(double distance_m);
   /// Another head from here on.
   void Forget();
   /// A frame without the track.
@@ -49,7 +52,7 @@ class HeadLearner {
 
   const RefinerConfig config_;
   const StereoRig rig_;
-  const double distance_m_;
+  double distance_m_;
   const HeadGeometry start_;
   WorkingPair pair_;
   const int most_views_;

@@ -18,14 +18,15 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGe
     : settings_(settings),
       head_(settings.refined.refiner, head),
       X_MR_(MakeTransform(Eigen::Matrix3d::Identity(), head.p_MR_m)),
-      pair_(rig, settings.space.distance()),
+      rig_(rig),
+      ranges_(rig, InM(settings.space)),
       texture_(head_.face),
       learner_(settings.refined.refiner, rig, settings.space.distance(), head,
                settings.refined.learned_views, background),
-      scores_{ScoreMap(pair_.eye(0).width, pair_.eye(0).height),
-              ScoreMap(pair_.eye(1).width, pair_.eye(1).height)},
-      bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
-             BandImages(pair_.eye(1).width, pair_.eye(1).height)},
+      scores_{ScoreMap(ranges_.width(), ranges_.height()),
+              ScoreMap(ranges_.width(), ranges_.height())},
+      bands_{BandImages(ranges_.width(), ranges_.height()),
+             BandImages(ranges_.width(), ranges_.height())},
       population_(settings.refined.population, settings.seed) {
   settings_.space = InM(settings.space);
   if (head.face) {
@@ -41,11 +42,13 @@ void RefinedEstimator::Reset() {
   for (ColorModel& colors : colors_) colors.Reset();
   centre_.reset();
   population_ = RealPopulation(settings_.refined.population, settings_.seed);
-  population_.SetSpace(settings_.space);
-  population_.Restart();
   colors_started_ = {};
   X_CM_.reset();
   if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
+  searched_range_ = FirstRange();
+  WorkIn(searched_range_);
+  population_.SetSpace(ranges_.space(range_));
+  population_.Restart();
   estimate_ = Estimate{};
   rejected_.clear();
   frames_ = 0;
@@ -79,8 +82,23 @@ void RefinedEstimator::LookForEnrolled() {
 
 void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
   settings_.space = InM(space);
+  ranges_ = DistanceRanges(rig_, settings_.space);
+  scores_.fill(ScoreMap(ranges_.width(), ranges_.height()));
+  bands_.fill(BandImages(ranges_.width(), ranges_.height()));
   centre_.reset();
-  population_.SetSpace(settings_.space);
+  searched_range_ = FirstRange();
+  WorkIn(searched_range_);
+  population_.SetSpace(ranges_.space(range_));
+}
+
+void RefinedEstimator::WorkIn(std::size_t range) {
+  range_ = range;
+  learner_.SetDistance(ranges_.space(range).distance());
+}
+
+std::size_t RefinedEstimator::FirstRange() const {
+  if (X_CM_) return ranges_.At(X_CM_->translation().z());
+  return settings_.nearest_to_m ? ranges_.At(settings_.nearest_to_m->z()) : 0;
 }
 
 SearchSpace RefinedEstimator::InM(SearchSpace space) const {
@@ -98,13 +116,15 @@ void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
   if (!settings_.recentre) return;
   centre_ = p_CM;
   is_centred_ = true;
-  population_.SetSpace(settings_.space.CentredOn(p_CM));
+  WorkIn(ranges_.At(p_CM.z(), range_));
+  population_.SetSpace(ranges_.space(range_).CentredOn(p_CM));
 }
 
 void RefinedEstimator::TakePictures(const StereoFrame& frame) {
   for (std::size_t i = 0; i < 2; ++i) {
-    pictures_[i] = pair_.Picture(frame, i);
+    pictures_[i] = pair().Picture(frame, i);
     if (colors_started_[i] || !pictures_[i] || pictures_[i]->format == PixelFormat::kGray) continue;
+    if (pair().is_doubled()) pair().Fill(i, pair().WholeBox(i));
     colors_[i].StartFrom(*pictures_[i]);
     colors_started_[i] = true;
   }
@@ -112,10 +132,11 @@ void RefinedEstimator::TakePictures(const StereoFrame& frame) {
 
 void RefinedEstimator::BuildMaps(const RigidTransform* X_CM) {
   for (std::size_t i = 0; i < 2; ++i) {
-    view_[i] = {&pair_.eye(i), nullptr, nullptr};
+    view_[i] = {&pair().eye(i), nullptr, nullptr};
     if (!pictures_[i]) continue;
-    const PixelBox box = X_CM ? pair_.BoxAround(i, *X_CM, kHeadRadius_m) : pair_.WholeBox(i);
+    const PixelBox box = X_CM ? pair().BoxAround(i, *X_CM, kHeadRadius_m) : pair().WholeBox(i);
     if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
+    pair().Fill(i, box);
     scores_[i].Build(*pictures_[i], colors_[i], box);
     bands_[i].Build(*pictures_[i], box);
     view_[i].scores = &scores_[i];
@@ -192,6 +213,7 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
 
 std::optional<RefinedEstimator::Candidate> RefinedEstimator::WhereLost() {
   if (!known_X_CM_ || !texture_.learned()) return {};
+  if (ranges_.At(known_X_CM_->translation().z(), range_) != range_) return {};
   const Candidate known =
       RefineFrom(*known_X_CM_, &texture_, settings_.refined.search_iterations, 9);
   if (!IsKnownFace(known, FindTextureNcc())) return {};
@@ -258,11 +280,13 @@ void RefinedEstimator::Judge(bool good) {
 void RefinedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking || bad_in_a_row_ == 0) {
     CentreOn(X_CM_->translation());
-  } else if (centre_ && bad_in_a_row_ % 2 == 1) {
-    is_centred_ = false;
-    population_.SetSpace(settings_.space);
-  } else if (centre_) {
+  } else if (centre_ && bad_in_a_row_ % 2 == 0) {
     CentreOn(*centre_);
+  } else {
+    is_centred_ = false;
+    searched_range_ = (searched_range_ + 1) % ranges_.size();
+    WorkIn(searched_range_);
+    population_.SetSpace(ranges_.space(range_));
   }
 }
 
@@ -285,6 +309,8 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   const bool tracked = X_CM_ && bad_in_a_row_ == 0;
   estimate_.budget_reduced = tracked && effort_.tracking < 1;
   timer->Enter(Stage::kMap);
+  const Eigen::Vector3d middle = population_.space().middle().head<3>();
+  pair().LookAt(tracked ? X_CM_->translation() : middle);
   TakePictures(frame);
   BuildMaps(tracked ? &*X_CM_ : nullptr);
   one_eye_in_a_row_ = BothEyes() ? 0 : one_eye_in_a_row_ + 1;

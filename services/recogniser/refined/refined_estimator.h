@@ -10,13 +10,13 @@
 
 #include "services/recogniser/estimator.h"
 #include "services/recogniser/refined/color_model.h"
+#include "services/recogniser/refined/distance_ranges.h"
 #include "services/recogniser/refined/head_anchor.h"
 #include "services/recogniser/refined/head_geometry.h"
 #include "services/recogniser/refined/head_learner.h"
 #include "services/recogniser/refined/pose_covariance.h"
 #include "services/recogniser/refined/prepared_head.h"
 #include "services/recogniser/refined/refined_config.h"
-#include "services/recogniser/refined/working_pair.h"
 
 namespace visavis {
 
@@ -68,6 +68,12 @@ class RefinedEstimator final : public Estimator {
   void RememberEnrolled();
   /// Whether the face that is tracked as a stranger's is the enrolled one after all.
   void LookForEnrolled();
+  WorkingPair& pair() { return ranges_.pair(range_); }
+  const WorkingPair& pair() const { return ranges_.pair(range_); }
+  /// From here on the pictures are those of the @p range.
+  void WorkIn(std::size_t range);
+  /// Where the search begins.
+  std::size_t FirstRange() const;
   void CentreOn(const Eigen::Vector3d& p_CM);
   void FollowHead();
   void TakePictures(const StereoFrame& frame);
@@ -133,7 +139,10 @@ class RefinedEstimator final : public Estimator {
   PreparedHead head_;                      ///< that was looked for first
   std::unique_ptr<PreparedHead> learned_;  ///< in its place, once it was learned
   const RigidTransform X_MR_;              ///< the frame that poses are reported in
-  WorkingPair pair_;
+  const StereoRig rig_;
+  DistanceRanges ranges_;
+  std::size_t range_{0};           ///< that is worked in
+  std::size_t searched_range_{0};  ///< that was searched last, not round a place
   FaceTexture texture_;
   std::optional<FaceTexture> enrolled_;
   HeadLearner learner_;

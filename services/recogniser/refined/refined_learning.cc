@@ -10,22 +10,25 @@ namespace {
 
 constexpr double kClearNcc = 0.8;     ///< of the texture: a frame to learn a head from
 constexpr double kFreeHidden = 0.25;  ///< share of the face, likewise
+constexpr double kLeastDetail = 400;  ///< [px] to a metre, likewise
 
 }  // namespace
 
 void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
   for (std::size_t i = 0; i < 2; ++i) {
     if (!view_[i].seen() || !scores_[i].has_color()) continue;
-    const EyePose pose(pair_.eye(i), X_CM);
-    const EyeGeometry& g = pair_.eye(i);
+    const EyePose pose(pair().eye(i), X_CM);
+    const EyeGeometry& g = pair().eye(i);
     const ImageView& picture = *pictures_[i];
     const int red = picture.format == PixelFormat::kBgr ? 2 : 0;
+    const PixelBox whole{0, 0, picture.width, picture.height};
+    const PixelBox seen = pair().is_doubled() ? scores_[i].box() : whole;
     const auto bin = [&](const Eigen::Vector3f& p_M) {
       const Eigen::Vector3f p = pose.InEye(p_M);
       if (p.z() < 0.1f) return -1;
       const int u = static_cast<int>(std::lround(g.cx + g.fx * p.x() / p.z()));
       const int v = static_cast<int>(std::lround(g.cy + g.fy * p.y() / p.z()));
-      if (u < 0 || v < 0 || u >= g.width || v >= g.height) return -1;
+      if (u < seen.x0 || v < seen.y0 || u >= seen.x1 || v >= seen.y1) return -1;
       const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
       return ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]);
     };
@@ -46,7 +49,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
     }
     Random random(static_cast<std::uint64_t>(frames_));
     for (int k = 0; k < 300; ++k) {
-      const int v = random.Index(picture.height), u = random.Index(picture.width);
+      const int v = seen.y0 + random.Index(seen.height()), u = seen.x0 + random.Index(seen.width());
       const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
       counts_.Add(kSurroundings, ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]), 0.3f);
     }
@@ -57,7 +60,8 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
 void RefinedEstimator::Learn(const StereoFrame& frame) {
   if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
   if (estimate_.status == TrackStatus::kTracking && !knows_enrolled() &&
-      candidate_.refined.texture_ncc > kClearNcc && candidate_.refined.hidden < kFreeHidden)
+      candidate_.refined.texture_ncc > kClearNcc && candidate_.refined.hidden < kFreeHidden &&
+      pair().detail(X_CM_->translation().z()) > kLeastDetail)
     learner_.Add(frame, candidate_.refined.X_CM, colors_);
   if (estimate_.status != TrackStatus::kTracking) return;
   covariance_.Learn(TowardsCamera(candidate_.refined.X_CM));

@@ -15,7 +15,7 @@ constexpr double kRejected_m = 0.05, kRejectedDepth_m = 0.15;
 constexpr std::size_t kMostRejected = 12;
 constexpr int kForgiveEvery = 4;  ///< searches in a row
 constexpr double kSamePlace_m = 0.025, kSamePlace_rad = 0.15;
-constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17, kFar_rad = 0.4;
+constexpr double kTurn_rad = 0.3, kAskew_rad = 0.17, kFar_rad = 0.4, kWide_rad = 0.6;
 constexpr std::array<double, 4> kTurns_rad = {0.3, -0.3, 0.55, -0.55};
 constexpr int kTurnedReach_px = 9;
 constexpr int kFirstIterations = 3, kTurnedIterations = 4;  ///< of each start
@@ -27,6 +27,25 @@ constexpr double kPromisingInside = 0.4, kPromisingOutside = -0.15;
 constexpr int kMostFaces = 4;          ///< that are told apart by search.nearest_to
 constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
 constexpr int kFewestShots = 100, kFewestEvaluations = 20;  ///< where the clock lowers them
+
+/// theta, psi [rad]: about kFar_rad apart, over all of @p space.
+std::vector<Eigen::Vector2d> Turns(const SearchSpace& space) {
+  const auto steps = [&](int i) {
+    std::vector<double> angles = {0};
+    const int count = std::max(1, static_cast<int>(std::lround(space.max[i] / kFar_rad)));
+    const double step = count == 1 ? kFar_rad : space.max[i] / count;
+    for (int k = 1; k <= count; ++k) {
+      angles.push_back(k * step);
+      angles.push_back(-k * step);
+    }
+    return angles;
+  };
+  std::vector<Eigen::Vector2d> turns;
+  for (const double theta : steps(4)) {
+    for (const double psi : steps(5)) turns.emplace_back(theta, psi);
+  }
+  return turns;
+}
 
 bool AreOnePlace(const RigidTransform& a, const RigidTransform& b) {
   return (a.translation() - b.translation()).norm() < kSamePlace_m &&
@@ -85,7 +104,7 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
 double RefinedEstimator::Contrast(const RigidTransform& X_CM) const {
   const std::size_t eye = view_[0].seen() ? 0 : 1;
   if (!view_[eye].seen()) return 0;
-  return head().contrast.Of(*pictures_[eye], pair_.eye(eye), X_CM);
+  return head().contrast.Of(*pictures_[eye], pair().eye(eye), X_CM);
 }
 
 // Each face found is put aside until no other is found. The learned colours and the maps are those
@@ -172,6 +191,9 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
       consider(RotationFromAngles({0, turn, turn}));
       consider(RotationFromAngles({0, turn, -turn}));
     }
+    for (const Eigen::Vector2d& turn : Turns(population_.space())) {
+      if (turn.cwiseAbs().maxCoeff() > kFar_rad) consider(RotationFromAngles({0, turn[0], turn[1]}));
+    }
   }
   const auto drop_implausible = [&] {
     const auto end =
@@ -242,7 +264,9 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);
-  if (IsFace(found) || !IsHead(found)) return found;
+  // In a wide space a face may fit turned wrongly, and look well.
+  const bool may_be_turned_far = population_.space().max.tail<2>().maxCoeff() > kWide_rad;
+  if ((IsFace(found) && !may_be_turned_far) || !IsHead(found)) return found;
   found = TryEveryTurn(found);
   return IsFace(found) ? found : Verify(found);
 }
@@ -279,10 +303,8 @@ RefinedEstimator::Candidate RefinedEstimator::TryTurned(const Candidate& candida
 RefinedEstimator::Candidate RefinedEstimator::TryEveryTurn(const Candidate& candidate) {
   const Eigen::Vector3d angles = AnglesFromRotation(candidate.refined.X_CM.linear());
   std::vector<Eigen::Matrix3d> turns;
-  for (const double nod : {-kFar_rad, 0.0, kFar_rad}) {
-    for (const double yaw : {-kFar_rad, 0.0, kFar_rad})
-      turns.push_back(RotationFromAngles({angles[0], nod, yaw}));
-  }
+  for (const Eigen::Vector2d& turn : Turns(population_.space()))
+    turns.push_back(RotationFromAngles({angles[0], turn[0], turn[1]}));
   return BestTurned(candidate, turns);
 }
 

@@ -13,7 +13,7 @@ namespace visavis {
 /// PackedScores of every pixel within a box of a picture.
 class ScoreMap {
  public:
-  /// Allocates for pictures of @p width x @p height px.
+  /// Allocates for pictures of up to @p width x @p height px.
   ScoreMap(int width, int height)
       : width_(width),
         height_(height),

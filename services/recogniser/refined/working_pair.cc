@@ -12,10 +12,28 @@ namespace {
 constexpr double kPixelsPerM = 800;
 constexpr int kBoxGrid = 16;
 constexpr int kLeastPicture_px = 16;
+constexpr int kLargestWindow_px = 1024;  ///< doubled
 
+/// Below 0: doublings.
 int HalvingsFor(const Pinhole& camera, double distance_m) {
   const double ratio = camera.fx / (distance_m * kPixelsPerM);
-  return std::max(0, static_cast<int>(std::lround(std::log2(ratio))));
+  return static_cast<int>(std::lround(std::log2(ratio)));
+}
+
+/// Of a window, doubled, that shows a head anywhere within @p range_m, @p distance_m away.
+int WindowFor(int picture_px, double focal_px, double range_m, double distance_m) {
+  const double needed = 2 * focal_px * (range_m + 2 * kHeadRadius_m) / distance_m;
+  const int grid = static_cast<int>(std::ceil(needed / kBoxGrid)) * kBoxGrid;
+  return std::min({grid, 2 * picture_px, kLargestWindow_px});
+}
+
+Pinhole DoubledWindow(Pinhole camera, const SearchSpace& space) {
+  camera.distortion = {};
+  camera.width = WindowFor(camera.width, camera.fx, space.range()[0], space.min[2]);
+  camera.height = WindowFor(camera.height, camera.fy, space.range()[1], space.min[2]);
+  camera.fx *= 2;
+  camera.fy *= 2;
+  return camera;
 }
 
 Pinhole Halved(Pinhole camera, int times) {
@@ -55,6 +73,35 @@ ImageView Halve(const ImageView& from, std::vector<std::uint8_t>* memory) {
   return to;
 }
 
+/// Row @p y of @p to, from @p box.x0 to box.x1, of the picture @p from doubled, bilinear: a pixel
+/// becomes four, whose centres lie a quarter of it from its own. @p corner: of @p to in @p from.
+void DoubleRow(const ImageView& from, const std::array<int, 2>& corner, const PixelBox& box, int y,
+               std::vector<std::uint16_t>* blended, const ImageView& to, std::uint8_t* out) {
+  const int channels = BytesPerPixel(from.format);
+  const auto clamp = [](int i, int limit) { return std::clamp(i, 0, limit - 1); };
+  const int near_y = corner[1] + y / 2, far_y = y % 2 == 0 ? near_y - 1 : near_y + 1;
+  const std::uint8_t *near = from.row(clamp(near_y, from.height)),
+                     *far = from.row(clamp(far_y, from.height));
+  // One pixel more on both sides.
+  const int first = corner[0] + box.x0 / 2 - 1, count = box.width() / 2 + 2;
+  blended->resize(static_cast<std::size_t>(count * channels));
+  std::uint16_t* row = blended->data();
+  for (int x = 0; x < count; ++x) {
+    const int i = clamp(first + x, from.width) * channels;
+    for (int c = 0; c < channels; ++c)
+      row[x * channels + c] = static_cast<std::uint16_t>(3 * near[i + c] + far[i + c]);
+  }
+  out += std::ptrdiff_t{y} * to.stride + std::ptrdiff_t{channels} * box.x0;
+  for (int x = 1; x + 1 < count; ++x, out += 2 * channels) {
+    const std::uint16_t* middle = row + x * channels;
+    for (int c = 0; c < channels; ++c) {
+      const int thrice = 3 * middle[c] + 8;
+      out[c] = static_cast<std::uint8_t>((thrice + middle[c - channels]) / 16);
+      out[c + channels] = static_cast<std::uint8_t>((thrice + middle[c + channels]) / 16);
+    }
+  }
+}
+
 void RequireSize(const std::string& eye, const Pinhole& camera, int halvings) {
   const int least = kLeastPicture_px << std::min(halvings, 20);
   for (const auto& [field, value] :
@@ -74,20 +121,72 @@ int Down(double px, int limit) {
 }  // namespace
 
 WorkingPair::WorkingPair(const StereoRig& rig, double distance_m)
-    : halvings_(HalvingsFor(rig.right, distance_m)),
+    : halvings_(std::max(0, HalvingsFor(rig.right, distance_m))),
+      cameras_{rig.right, rig.left},
       eyes_{EyeGeometry(Halved(rig.right, halvings_), RigidTransform::Identity()),
             EyeGeometry(Halved(rig.left, halvings_), rig.X_CL)} {
   RequireSize("right", rig.right, halvings_);
   RequireSize("left", rig.left, halvings_);
 }
 
+WorkingPair::WorkingPair(const StereoRig& rig, const SearchSpace& space)
+    : WorkingPair(rig, space.distance()) {
+  if (HalvingsFor(rig.right, space.distance()) >= 0) return;
+  is_doubled_ = true;
+  eyes_ = {EyeGeometry(DoubledWindow(rig.right, space), RigidTransform::Identity()),
+           EyeGeometry(DoubledWindow(rig.left, space), rig.X_CL)};
+  LookAt(0.5 * (space.min + space.max).head<3>());
+}
+
+void WorkingPair::LookAt(const Eigen::Vector3d& p_C) {
+  if (!is_doubled_) return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EyeGeometry& eye = eyes_[i];
+    const Pinhole& camera = cameras_[i];
+    const Eigen::Vector3d p = (eye.R_EC * p_C.cast<float>() + eye.p_EC).cast<double>();
+    const auto corner = [&](double focal, double centre, double across, int window, int picture) {
+      const double middle = p.z() > 0 ? centre + focal * across / p.z() : centre;
+      const double first = std::isfinite(middle) ? middle - window / 4.0 : 0;
+      return static_cast<int>(std::lround(std::clamp(first, 0.0, picture - window / 2.0)));
+    };
+    corners_[i] = {corner(camera.fx, camera.cx, p.x(), eye.width, camera.width),
+                   corner(camera.fy, camera.cy, p.y(), eye.height, camera.height)};
+    eye.cx = static_cast<float>(2 * (camera.cx - corners_[i][0] + 0.5) - 0.5);
+    eye.cy = static_cast<float>(2 * (camera.cy - corners_[i][1] + 0.5) - 0.5);
+  }
+}
+
 std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::size_t i) {
   std::optional<ImageView> picture = i == 0 ? frame.right : frame.left;
   if (!picture) return picture;
+  if (is_doubled_) {
+    windows_[i] = *picture;
+    ImageView& window = windows_[i];
+    window.width = eyes_[i].width;
+    window.height = eyes_[i].height;
+    window.stride = window.width * BytesPerPixel(window.format);
+    window.size =
+        static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.height);
+    if (halved_[i].size() < window.size) halved_[i].resize(window.size);
+    window.data = halved_[i].data();
+    sources_[i] = *picture;
+    filled_[i] = {};
+    return window;
+  }
   for (int k = 0; k < halvings_; ++k) {
     picture = Halve(*picture, k % 2 == 0 ? &halved_[i] : &scratch_[i]);
   }
   return picture;
+}
+
+void WorkingPair::Fill(std::size_t i, const PixelBox& box) {
+  const PixelBox& filled = filled_[i];
+  const bool is_there = box.x0 >= filled.x0 && box.y0 >= filled.y0 && box.x1 <= filled.x1 &&
+                        box.y1 <= filled.y1;
+  if (!is_doubled_ || is_there) return;
+  for (int y = box.y0; y < box.y1; ++y)
+    DoubleRow(sources_[i], corners_[i], box, y, &blended_, windows_[i], halved_[i].data());
+  filled_[i] = box;
 }
 
 PixelBox WorkingPair::WholeBox(std::size_t i) const {

@@ -195,6 +195,105 @@ TEST(WorkingPairTest, WithoutHalvingsThePictureIsTheCamerasOwnAndAMissingOneStay
   EXPECT_FALSE(pair.Picture(frame, 1));
 }
 
+SearchSpace FarSpace() {
+  SearchSpace space;
+  space.min << -0.2, -0.2, 1.6, -0.3, -0.3, -0.3;
+  space.max << 0.2, 0.2, 3.2, 0.3, 0.3, 0.3;
+  return space;
+}
+
+TEST(WorkingPairTest, OnlyWhereAPixelIsLargeOnTheHeadAreWindowsDoubled) {
+  EXPECT_TRUE(WorkingPair(TestRig(), FarSpace()).is_doubled());
+  SearchSpace near = FarSpace();
+  near.min[2] = 0.9;
+  near.max[2] = 1.2;
+  EXPECT_FALSE(WorkingPair(TestRig(), near).is_doubled());
+  EXPECT_FALSE(WorkingPair(FourTimes(TestRig()), FarSpace()).is_doubled());
+  EXPECT_FALSE(WorkingPair(TestRig(), 2.4).is_doubled());
+}
+
+// Pixels of the cameras' pictures, doubled, but for an even offset that is the same for all.
+TEST(WorkingPairTest, DoubledWindowsShowAHeadAnywhereInTheirSpace) {
+  const StereoRig rig = UnevenRig();
+  WorkingPair pair(rig, FarSpace());
+  ASSERT_TRUE(pair.is_doubled());
+  const Eigen::Vector2d half(0.5, 0.5);
+  Random random(8);
+  std::optional<Eigen::Vector2d> corner;
+  for (int i = 0; i < 100; ++i) {
+    Vector6d phi;
+    for (int k = 0; k < 6; ++k) phi[k] = random.Uniform(FarSpace().min[k], FarSpace().max[k]);
+    const RigidTransform X_CM = TransformFromPhi(phi);
+    const Vector3d p_M = RandomInBall(&random, 0.12);
+    const Eigen::Vector2d pixel = Pixel(pair.eye(1), X_CM, p_M);
+    const Eigen::Vector2d uv = ProjectLeft(rig, X_CM, p_M).uv;
+    EXPECT_TRUE(pixel.x() > 0 && pixel.y() > 0 && pixel.x() < pair.eye(1).width &&
+                pixel.y() < pair.eye(1).height)
+        << pixel.transpose();
+    const Eigen::Vector2d offset = (2 * (uv + half) - half - pixel) / 2;
+    if (!corner) corner = offset;
+    EXPECT_LT((offset - *corner).norm(), 1e-2);
+    EXPECT_LT((offset - offset.array().round().matrix()).norm(), 1e-2);
+  }
+}
+
+TEST(WorkingPairTest, AWindowFollowsWhatItIsToldToLookAtAndStaysInThePicture) {
+  WorkingPair pair(TestRig(), FarSpace());
+  const auto pixel = [&](std::size_t eye, double x_mm) {
+    return Pixel(pair.eye(eye), TransformFromPhi(PhiOf(x_mm, 0, 2000, 0, 0, 0)), Vector3d::Zero());
+  };
+  for (const double x_mm : {0.0, 100.0, -150.0}) {
+    pair.LookAt(Vector3d(1e-3 * x_mm, 0, 2));
+    EXPECT_NEAR(pixel(0, x_mm).x(), 0.5 * pair.eye(0).width, 3);
+    EXPECT_NEAR(pixel(1, x_mm).x(), 0.5 * pair.eye(1).width, 3);
+  }
+  const OwnedImage image = FlatImage(640, 480, 7, 8, 9);
+  for (const Vector3d& p_C : {Vector3d(5, 0, 2), Vector3d(-5, 9, 2), Vector3d(0, 0, -1),
+                              Vector3d(NAN, NAN, NAN), Vector3d(0, 0, 0)}) {
+    pair.LookAt(p_C);
+    const auto picture = pair.Picture({0, image.view, image.view}, 0);
+    pair.Fill(0, pair.WholeBox(0));
+    EXPECT_EQ(picture->row(pair.WholeBox(0).y1 - 1)[3 * (pair.WholeBox(0).x1 - 1) + 2], 9);
+  }
+}
+
+TEST(WorkingPairTest, ADoubledPixelIsInterpolated) {
+  StereoRig rig = TestRig();
+  rig.right.width = rig.left.width = 60;
+  rig.right.height = rig.left.height = 40;
+  WorkingPair pair(rig, FarSpace());
+  ASSERT_TRUE(pair.is_doubled());
+  ASSERT_EQ(pair.eye(0).width, 120);
+  ASSERT_EQ(pair.eye(0).height, 80);
+  Random random(9);
+  const OwnedImage rgb = NoiseImage(60, 40, &random), gray = GrayImage(rgb.view);
+  for (const OwnedImage* image : {&rgb, &gray}) {
+    const ImageView& from = image->view;
+    const int channels = BytesPerPixel(from.format);
+    const auto doubled = pair.Picture({0, std::nullopt, from}, 1);
+    ASSERT_TRUE(doubled);
+    EXPECT_EQ(doubled->format, from.format);
+    for (const PixelBox& box : {PixelBox{16, 32, 48, 64}, PixelBox{0, 0, 112, 80}}) {
+      pair.Fill(1, box);
+      for (int y = box.y0; y < box.y1; ++y) {
+        for (int i = box.x0 * channels; i < box.x1 * channels; ++i) {
+          const double u = (i / channels + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
+          const auto at = [&](double column, double row) {
+            const int x = std::clamp(static_cast<int>(column), 0, from.width - 1);
+            return double(from.row(std::clamp(static_cast<int>(row), 0, from.height - 1))
+                              [x * channels + i % channels]);
+          };
+          const double u0 = std::floor(u), v0 = std::floor(v), a = u - u0, b = v - v0;
+          const double expected =
+              (1 - b) * ((1 - a) * at(u0, v0) + a * at(u0 + 1, v0)) +
+              b * ((1 - a) * at(u0, v0 + 1) + a * at(u0 + 1, v0 + 1));
+          ASSERT_NEAR(doubled->row(y)[i], expected, 0.51) << i << " " << y;
+        }
+      }
+    }
+  }
+}
+
 TEST(WorkingPairTest, BoxesContainASphereAndStayInThePicture) {
   for (const StereoRig& rig : {SmallRig(), TestRig(), UnevenRig()}) {
     const WorkingPair pair(rig, 1.0);
