@@ -98,6 +98,7 @@ class RefinedEstimator final : public Estimator {
   Candidate BestVerified();
   Candidate TryTurned(const Candidate& candidate);
   Candidate TryEveryTurn(const Candidate& candidate);
+  Candidate TryAskew(const Candidate& candidate);
   Candidate BestTurned(const Candidate& candidate, const std::vector<Eigen::Matrix3d>& turns);
   /// What remains of @p candidate when the colours are learned from it: of a head more than before,
   /// of a chance likeness less. The colour models are left as learned.

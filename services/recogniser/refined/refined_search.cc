@@ -192,7 +192,8 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
       consider(RotationFromAngles({0, turn, -turn}));
     }
     for (const Eigen::Vector2d& turn : Turns(population_.space())) {
-      if (turn.cwiseAbs().maxCoeff() > kFar_rad) consider(RotationFromAngles({0, turn[0], turn[1]}));
+      if (turn.cwiseAbs().maxCoeff() > kFar_rad)
+        consider(RotationFromAngles({0, turn[0], turn[1]}));
     }
   }
   const auto drop_implausible = [&] {
@@ -264,11 +265,12 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);
+  if (!IsHead(found)) return found;
   // In a wide space a face may fit turned wrongly, and look well.
-  const bool may_be_turned_far = population_.space().max.tail<2>().maxCoeff() > kWide_rad;
-  if ((IsFace(found) && !may_be_turned_far) || !IsHead(found)) return found;
-  found = TryEveryTurn(found);
-  return IsFace(found) ? found : Verify(found);
+  const bool is_wide = population_.space().max.tail<3>().maxCoeff() > kWide_rad;
+  if (!IsFace(found) || is_wide) found = TryEveryTurn(found);
+  if (!IsFace(found)) found = Verify(found);
+  return is_wide ? TryAskew(found) : found;
 }
 
 bool RefinedEstimator::IsHead(const Candidate& c) const {
@@ -305,6 +307,17 @@ RefinedEstimator::Candidate RefinedEstimator::TryEveryTurn(const Candidate& cand
   std::vector<Eigen::Matrix3d> turns;
   for (const Eigen::Vector2d& turn : Turns(population_.space()))
     turns.push_back(RotationFromAngles({angles[0], turn[0], turn[1]}));
+  return BestTurned(candidate, turns);
+}
+
+RefinedEstimator::Candidate RefinedEstimator::TryAskew(const Candidate& candidate) {
+  std::vector<Eigen::Matrix3d> turns;
+  for (const double x : {-kAskew_rad, 0.0, kAskew_rad}) {
+    for (const double y : {-kAskew_rad, 0.0, kAskew_rad}) {
+      for (const double z : {-kAskew_rad, 0.0, kAskew_rad})
+        turns.push_back(candidate.refined.X_CM.linear() * ExpRotation({x, y, z}));
+    }
+  }
   return BestTurned(candidate, turns);
 }
 

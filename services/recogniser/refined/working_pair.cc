@@ -165,8 +165,7 @@ std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::siz
     window.width = eyes_[i].width;
     window.height = eyes_[i].height;
     window.stride = window.width * BytesPerPixel(window.format);
-    window.size =
-        static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.height);
+    window.size = static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.height);
     if (halved_[i].size() < window.size) halved_[i].resize(window.size);
     window.data = halved_[i].data();
     sources_[i] = *picture;
@@ -181,8 +180,8 @@ std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::siz
 
 void WorkingPair::Fill(std::size_t i, const PixelBox& box) {
   const PixelBox& filled = filled_[i];
-  const bool is_there = box.x0 >= filled.x0 && box.y0 >= filled.y0 && box.x1 <= filled.x1 &&
-                        box.y1 <= filled.y1;
+  const bool is_there =
+      box.x0 >= filled.x0 && box.y0 >= filled.y0 && box.x1 <= filled.x1 && box.y1 <= filled.y1;
   if (!is_doubled_ || is_there) return;
   for (int y = box.y0; y < box.y1; ++y)
     DoubleRow(sources_[i], corners_[i], box, y, &blended_, windows_[i], halved_[i].data());

@@ -32,7 +32,8 @@ class WorkingPair {
   const EyeGeometry& eye(std::size_t i) const { return eyes_[i]; }
   /// [px] of the right camera's picture to a metre at @p distance_m.
   double detail(double distance_m) const { return cameras_[0].fx / distance_m; }
-  /// Moves the windows of a doubled pair: @p p_C [m] in the right camera's frame is in their middle.
+  /// Moves the windows of a doubled pair: @p p_C [m] in the right camera's frame is in their
+  /// middle.
   void LookAt(const Eigen::Vector3d& p_C);
   /// The camera's picture, its halvings or its doubled window, of which Fill makes the pixels;
   /// nothing where @p frame has none. Right, left.

@@ -280,13 +280,12 @@ TEST(WorkingPairTest, ADoubledPixelIsInterpolated) {
           const double u = (i / channels + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
           const auto at = [&](double column, double row) {
             const int x = std::clamp(static_cast<int>(column), 0, from.width - 1);
-            return double(from.row(std::clamp(static_cast<int>(row), 0, from.height - 1))
-                              [x * channels + i % channels]);
+            return double(from.row(std::clamp(static_cast<int>(row), 0,
+                                              from.height - 1))[x * channels + i % channels]);
           };
           const double u0 = std::floor(u), v0 = std::floor(v), a = u - u0, b = v - v0;
-          const double expected =
-              (1 - b) * ((1 - a) * at(u0, v0) + a * at(u0 + 1, v0)) +
-              b * ((1 - a) * at(u0, v0 + 1) + a * at(u0 + 1, v0 + 1));
+          const double expected = (1 - b) * ((1 - a) * at(u0, v0) + a * at(u0 + 1, v0)) +
+                                  b * ((1 - a) * at(u0, v0 + 1) + a * at(u0 + 1, v0 + 1));
           ASSERT_NEAR(doubled->row(y)[i], expected, 0.51) << i << " " << y;
         }
       }
