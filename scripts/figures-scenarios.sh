@@ -15,7 +15,7 @@ SCENARIOS
 turning_by_up_to_55_deg --scenario moving_head --set scenario.head_turn_deg=55
 random_poses,_40_deg_about_each_axis --scenario random_poses --set scenario.random_deg=40
 moving_between_1.2_and_1.8_m --scenario moving_head --set scenario.head_travel_mm=350 --set scenario.distance_mm=1500 --set scene.wall_z_mm=2800
-random_poses,_0.5_m_away --scenario random_poses --set scenario.random_min_z_mm=450 --set scenario.random_max_z_mm=550 --set scenario.random_xy_mm=80
+random_poses,_0.65_m_away --scenario random_poses --set scenario.random_min_z_mm=600 --set scenario.random_max_z_mm=700 --set scenario.random_xy_mm=30
 random_poses,_2_m_away --scenario random_poses --set scenario.random_min_z_mm=1950 --set scenario.random_max_z_mm=2050 --set scene.wall_z_mm=3500
 random_poses,_2.9_m_away --scenario random_poses --set scenario.random_min_z_mm=2850 --set scenario.random_max_z_mm=2950 --set scene.wall_z_mm=4400
 SCENARIOS

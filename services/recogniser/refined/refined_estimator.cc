@@ -229,16 +229,21 @@ bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
          phi[2] > space.min[2] - kBeyond_m && phi[2] < space.max[2] + kBeyond_m;
 }
 
-// What a face must show whoever it is.
+// What a face must show whoever it is. Where colours tell little, its features must tell more, and
+// where they tell nothing, as much as in grey pictures.
 bool RefinedEstimator::IsFace(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  return IsPlausible(c.refined.X_CM) && c.refined.converged() &&
-         c.score.ncc > (c.score.has_color ? e.lock_ncc : e.lock_gray_ncc) && BothEyes() &&
-         c.refined.stereo_ncc > (c.score.has_color ? e.lock_stereo_ncc : e.lock_gray_stereo_ncc) &&
-         (!c.score.has_color ||
-          (c.score.outside < e.lock_outside && c.score.inside > e.lock_inside) ||
-          (c.score.outside < e.vague_outside && c.score.inside > e.vague_inside &&
-           c.score.ncc > e.vague_ncc));
+  if (!IsPlausible(c.refined.X_CM) || !c.refined.converged() || !BothEyes()) return false;
+  const MeshScore& s = c.score;
+  const auto shows = [&](double ncc, double stereo_ncc) {
+    return s.ncc > ncc && c.refined.stereo_ncc > stereo_ncc;
+  };
+  if (shows(e.lock_gray_ncc, e.lock_gray_stereo_ncc) &&
+      (!s.has_color || (s.outside < 0 && s.inside > 0)))
+    return true;
+  if (!s.has_color || !shows(e.lock_ncc, e.lock_stereo_ncc)) return false;
+  return (s.outside < e.lock_outside && s.inside > e.lock_inside) ||
+         (s.outside < e.vague_outside && s.inside > e.vague_inside && s.ncc > e.vague_ncc);
 }
 
 // What the face that was learned must show.
