@@ -66,6 +66,8 @@ class Estimator {
 
   virtual void SetFeedforward(FeedforwardMode mode) = 0;
   virtual void SetSearchSpace(const SearchSpace& space) = 0;
+  /// Frames after which a head that is not known was looked for everywhere.
+  virtual int frames_of_a_search() const { return 1; }
   /// From the next frame on; nothing where the evaluations are fixed.
   virtual void SetEffort(const Effort&) {}
 

@@ -11,6 +11,7 @@
 #include "common/rigs/rig_file.h"
 #include "services/recogniser/head_file.h"
 #include "services/recogniser/recogniser_messages.h"
+#include "services/recogniser/refined/distance_ranges.h"
 #include "services/recogniser/refined/refined_estimator.h"
 
 namespace visavis {
@@ -201,7 +202,10 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
                "must be empty, published or refined");
   const FeedforwardMode feedforward =
       message.feedforward.empty() ? feedforward_ : ParseFeedforward(message.feedforward);
-  if (message.set_search_space) commanded_space_ = SearchSpaceFromMessage(message);
+  std::optional<SearchSpace> space;
+  if (message.set_search_space) space = SearchSpaceFromMessage(message);
+  if (space && rig_) DistanceRanges(*rig_, *space);  // throws where the pictures are too small
+  if (space) commanded_space_ = space;
 
   ProcessWaiting();  // a pair that waits came before the command
   feedforward_ = feedforward;
@@ -216,7 +220,7 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
     BeginTrack();
   }
   estimator_->SetFeedforward(feedforward_);
-  if (message.set_search_space) estimator_->SetSearchSpace(*commanded_space_);
+  if (space) estimator_->SetSearchSpace(*space);
   if (message.reset) {
     estimator_->Reset();
     BeginTrack();

@@ -21,7 +21,9 @@ bool SwapProbe::IsDue(bool is_tracking) {
 void SwapProbe::Try(const StereoFrame& exchanged, StageTimer* timer) {
   if (!estimator_) estimator_ = make_();
   estimator_->Reset();
-  const bool is_head = estimator_->Process(exchanged, {}, timer).status == TrackStatus::kTracking;
+  bool is_head = false;
+  for (int i = 0; i < estimator_->frames_of_a_search() && !is_head; ++i)
+    is_head = estimator_->Process(exchanged, {}, timer).status == TrackStatus::kTracking;
   proofs_ = is_head ? proofs_ + 1 : 0;
   period_ = is_head ? kPeriod : std::min(2 * period_, kLongestPeriod);
 }

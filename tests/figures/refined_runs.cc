@@ -173,11 +173,7 @@ int main(int argc, char* argv[]) {
     return 2;
   }
   try {
-    visavis::RecogniserConfig config;
-    const visavis::ConfigSource source("", sets);
-    visavis::ConfigReader reader(source, source.root(), "");
-    config.Serialize(&reader);
-    auto settings = config.RefinedSettings();
+    auto settings = visavis::LoadConfig<visavis::RecogniserConfig>("", sets).RefinedSettings();
     settings.seed = static_cast<std::uint64_t>(std::max(0, std::atoi(logs[0].c_str())));
     using visavis::HeadGeometry;
     const HeadGeometry head = head_file.empty() ? HeadGeometry{} : visavis::LoadHeadFile(head_file);

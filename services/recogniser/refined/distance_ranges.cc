@@ -6,12 +6,14 @@
 namespace visavis {
 namespace {
 
-constexpr double kBeyond = 1.07;  ///< a head may leave its part by this factor
+constexpr double kBeyond = 1.04;  ///< a head may leave its part by this factor
+constexpr double kNearest_m = 0.1;
 
 }  // namespace
 
 DistanceRanges::DistanceRanges(const StereoRig& rig, const SearchSpace& space) {
-  const double near = space.min[2], ratio = space.max[2] / near;
+  const double near = std::max(space.min[2], kNearest_m);
+  const double ratio = std::max(space.max[2] / near, 1.0);
   const int count = std::max(1, static_cast<int>(std::ceil(std::log2(ratio) - 1e-9)));
   for (int i = 0; i < count; ++i) {
     SearchSpace part = space;

@@ -10,7 +10,7 @@ namespace visavis {
 
 /// A search space cut along the optical axis, so that within a part a head looks about as large
 /// everywhere: each part spans an octave of distance at most and has pictures of its own
-/// resolution.
+/// resolution. What is nearer than 0.1 m is taken to be there.
 class DistanceRanges {
  public:
   /// @throws std::invalid_argument as WorkingPair.

@@ -10,6 +10,7 @@ constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the 
 constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
+constexpr double kBeyond = 0.08;                      ///< of its distance, likewise
 
 }  // namespace
 
@@ -81,8 +82,9 @@ void RefinedEstimator::LookForEnrolled() {
 }
 
 void RefinedEstimator::SetSearchSpace(const SearchSpace& space) {
+  DistanceRanges ranges(rig_, InM(space));
   settings_.space = InM(space);
-  ranges_ = DistanceRanges(rig_, settings_.space);
+  ranges_ = std::move(ranges);
   scores_.fill(ScoreMap(ranges_.width(), ranges_.height()));
   bands_.fill(BandImages(ranges_.width(), ranges_.height()));
   centre_.reset();
@@ -97,8 +99,7 @@ void RefinedEstimator::WorkIn(std::size_t range) {
 }
 
 std::size_t RefinedEstimator::FirstRange() const {
-  if (X_CM_) return ranges_.At(X_CM_->translation().z());
-  return settings_.nearest_to_m ? ranges_.At(settings_.nearest_to_m->z()) : 0;
+  return X_CM_ && bad_in_a_row_ == 0 ? ranges_.At(X_CM_->translation().z()) : 0;
 }
 
 SearchSpace RefinedEstimator::InM(SearchSpace space) const {
@@ -113,16 +114,30 @@ int RefinedEstimator::Lowered(int count, double share, int least) {
 }
 
 void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
-  if (!settings_.recentre) return;
+  WorkIn(ranges_.At(p_CM.z(), range_));
+  searched_range_ = range_;
+  if (!settings_.recentre) {
+    population_.SetSpace(ranges_.space(range_));
+    return;
+  }
   centre_ = p_CM;
   is_centred_ = true;
-  WorkIn(ranges_.At(p_CM.z(), range_));
   population_.SetSpace(ranges_.space(range_).CentredOn(p_CM));
 }
 
-void RefinedEstimator::TakePictures(const StereoFrame& frame) {
+void RefinedEstimator::LookInto(std::size_t range) {
+  if (range != range_) {
+    WorkIn(range);
+    population_.SetSpace(ranges_.space(range));
+    population_.Restart();
+  }
+  pair().LookAt(population_.space().middle().head<3>());
+  TakePictures();
+}
+
+void RefinedEstimator::TakePictures() {
   for (std::size_t i = 0; i < 2; ++i) {
-    pictures_[i] = pair().Picture(frame, i);
+    pictures_[i] = pair().Picture(*frame_, i);
     if (colors_started_[i] || !pictures_[i] || pictures_[i]->format == PixelFormat::kGray) continue;
     if (pair().is_doubled()) pair().Fill(i, pair().WholeBox(i));
     colors_[i].StartFrom(*pictures_[i]);
@@ -226,7 +241,8 @@ bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
   const SearchSpace& space = population_.space();
   return ((phi - space.min).tail<3>().array() > -kBeyond_rad).all() &&
          ((space.max - phi).tail<3>().array() > -kBeyond_rad).all() &&
-         phi[2] > space.min[2] - kBeyond_m && phi[2] < space.max[2] + kBeyond_m;
+         phi[2] > space.min[2] - std::max(kBeyond_m, kBeyond * space.min[2]) &&
+         phi[2] < space.max[2] + std::max(kBeyond_m, kBeyond * space.max[2]);
 }
 
 // What a face must show whoever it is. Where colours tell little, its features must tell more, and
@@ -285,6 +301,8 @@ void RefinedEstimator::Judge(bool good) {
 void RefinedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking || bad_in_a_row_ == 0) {
     CentreOn(X_CM_->translation());
+  } else if (strange_in_a_row_ > 0) {
+    // A stranger is looked at again.
   } else if (centre_ && bad_in_a_row_ % 2 == 0) {
     CentreOn(*centre_);
   } else {
@@ -314,9 +332,13 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   const bool tracked = X_CM_ && bad_in_a_row_ == 0;
   estimate_.budget_reduced = tracked && effort_.tracking < 1;
   timer->Enter(Stage::kMap);
-  const Eigen::Vector3d middle = population_.space().middle().head<3>();
-  pair().LookAt(tracked ? X_CM_->translation() : middle);
-  TakePictures(frame);
+  frame_ = &frame;
+  if (tracked) {
+    pair().LookAt(X_CM_->translation());
+    TakePictures();
+  } else {
+    LookInto(range_);
+  }
   BuildMaps(tracked ? &*X_CM_ : nullptr);
   one_eye_in_a_row_ = BothEyes() ? 0 : one_eye_in_a_row_ + 1;
   bool good = false;
@@ -328,6 +350,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
            (texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_));
     if (!good) {
       timer->Enter(Stage::kMap);
+      if (pair().is_doubled()) LookInto(range_);
       BuildMaps(nullptr);
     }
   }
@@ -357,13 +380,13 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (good && BothEyes() && texture_.learned() && !texture_.fixed()) MoveAnchor();
   X_CM_ = candidate_.refined.X_CM;
   if (good && texture_.learned()) known_X_CM_ = X_CM_;
-  FollowHead();
   estimate_.X_CM = *X_CM_ * X_MR_;
   estimate_.fitness = {candidate_.score.total(), -candidate_.score.outside, candidate_.score.inside,
                        candidate_.score.ncc};
   estimate_.covariance = Covariance(good);
   total_generations_ += estimate_.generations;
   if (good && BothEyes()) Learn(frame);  // one eye's depth is no master
+  FollowHead();
   ++frames_;
   return estimate_;
 }

@@ -33,6 +33,7 @@ class RefinedEstimator final : public Estimator {
   void Reset() override;
   void SetFeedforward(FeedforwardMode mode) override { settings_.feedforward = mode; }
   void SetSearchSpace(const SearchSpace& space) override;
+  int frames_of_a_search() const override { return static_cast<int>(ranges_.size()); }
   void SetEffort(const Effort& effort) override { effort_ = effort; }
   const std::array<ColorModel, 2>& colors() const { return colors_; }
   const FaceTexture& texture() const { return texture_; }
@@ -76,7 +77,9 @@ class RefinedEstimator final : public Estimator {
   std::size_t FirstRange() const;
   void CentreOn(const Eigen::Vector3d& p_CM);
   void FollowHead();
-  void TakePictures(const StereoFrame& frame);
+  /// The pictures of the frame, of all of the @p range's space.
+  void LookInto(std::size_t range);
+  void TakePictures();
   /// Maps of the whole pictures, or of the part round @p X_CM.
   void BuildMaps(const RigidTransform* X_CM);
   void Feedforward(const CameraStep& step);
@@ -155,6 +158,7 @@ class RefinedEstimator final : public Estimator {
   ColorModel::Counts counts_;
   std::array<ScoreMap, 2> scores_;
   std::array<BandImages, 2> bands_;
+  const StereoFrame* frame_{nullptr};  ///< that is processed; aliased
   std::array<std::optional<ImageView>, 2> pictures_;
   StereoView view_;
   RealPopulation population_;

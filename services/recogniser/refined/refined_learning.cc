@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kClearNcc = 0.8;     ///< of the texture: a frame to learn a head from
 constexpr double kFreeHidden = 0.25;  ///< share of the face, likewise
-constexpr double kLeastDetail = 400;  ///< [px] to a metre, likewise
+constexpr double kLeastDetail = 300;  ///< [px] to a metre, likewise
 
 }  // namespace
 
@@ -48,9 +48,10 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
       }
     }
     Random random(static_cast<std::uint64_t>(frames_));
+    const ImageView& around = pair().is_doubled() ? pair().source(i) : picture;
     for (int k = 0; k < 300; ++k) {
-      const int v = seen.y0 + random.Index(seen.height()), u = seen.x0 + random.Index(seen.width());
-      const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
+      const int v = random.Index(around.height), u = random.Index(around.width);
+      const std::uint8_t* rgb = around.row(v) + 3 * std::ptrdiff_t{u};
       counts_.Add(kSurroundings, ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]), 0.3f);
     }
     colors_[i].Learn(&counts_);

@@ -32,12 +32,13 @@ constexpr int kFewestShots = 100, kFewestEvaluations = 20;  ///< where the clock
 std::vector<Eigen::Vector2d> Turns(const SearchSpace& space) {
   const auto steps = [&](int i) {
     std::vector<double> angles = {0};
-    const int count = std::max(1, static_cast<int>(std::lround(space.max[i] / kFar_rad)));
-    const double step = count == 1 ? kFar_rad : space.max[i] / count;
-    for (int k = 1; k <= count; ++k) {
-      angles.push_back(k * step);
-      angles.push_back(-k * step);
-    }
+    const auto add = [&](double far) {  // from 0 on
+      const int count = std::max(1, static_cast<int>(std::lround(std::abs(far) / kFar_rad)));
+      const double step = count == 1 ? std::copysign(kFar_rad, far) : far / count;
+      for (int k = 1; k <= count; ++k) angles.push_back(k * step);
+    };
+    add(std::max(space.max[i], 0.0));
+    add(-std::max(-space.min[i], 0.0));
     return angles;
   };
   std::vector<Eigen::Vector2d> turns;
@@ -107,32 +108,45 @@ double RefinedEstimator::Contrast(const RigidTransform& X_CM) const {
   return head().contrast.Of(*pictures_[eye], pair().eye(eye), X_CM);
 }
 
-// Each face found is put aside until no other is found. The learned colours and the maps are those
-// of the face taken.
+// Each face found is put aside until no other is found, in each part of the space. The learned
+// colours and the maps are those of the face taken.
 RefinedEstimator::Candidate RefinedEstimator::SearchNearest() {
-  Candidate found = Search();
-  if (!settings_.nearest_to_m || texture_.learned()) return found;
+  if (!settings_.nearest_to_m || texture_.learned()) return Search();
   const auto distance = [&](const Candidate& candidate) {
     return (candidate.refined.X_CM * X_MR_.translation() - *settings_.nearest_to_m).norm();
   };
-  const auto colors_at_start = colors_before_;
+  const auto colors_at_start = colors_;
   auto colors_nearest = colors_;
-  Candidate nearest = found;
-  for (int k = 1; k < kMostFaces && IsFace(found); ++k) {
-    rejected_.push_back(found.refined.X_CM.translation());
-    colors_ = colors_at_start;
-    BuildMaps(nullptr);
-    population_.Restart();
-    found = Search();
-    if (!IsFace(found) || distance(found) >= distance(nearest)) continue;
-    nearest = found;
-    colors_nearest = colors_;
+  const std::size_t first = range_;
+  std::size_t nearest_range = first;
+  bool is_any_face = false;
+  std::optional<Candidate> nearest;
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    const std::size_t range = (first + i) % ranges_.size();
+    for (int k = 0; k < kMostFaces; ++k) {
+      if (i + static_cast<std::size_t>(k) > 0) {
+        colors_ = colors_at_start;
+        LookInto(range);
+        BuildMaps(nullptr);
+        population_.Restart();
+      }
+      const Candidate found = Search();
+      const bool is_face = IsFace(found);
+      if (!nearest || (is_face && (!is_any_face || distance(found) < distance(*nearest)))) {
+        nearest = found;
+        nearest_range = range;
+        colors_nearest = colors_;
+      }
+      is_any_face |= is_face;
+      if (!is_face) break;
+      rejected_.push_back(found.refined.X_CM.translation());
+    }
   }
-  if (!IsFace(nearest)) return nearest;
+  LookInto(nearest_range);
   colors_before_ = colors_at_start;
   colors_ = colors_nearest;
-  BuildMaps(&nearest.refined.X_CM);
-  return nearest;
+  if (is_any_face) BuildMaps(&nearest->refined.X_CM);
+  return *nearest;
 }
 
 bool RefinedEstimator::WasRejected(const Vector6d& phi) const {
@@ -265,9 +279,11 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);
-  if (!IsHead(found)) return found;
+  if (!IsHead(found) || effort_.searching < kLittleEffort) return found;
   // In a wide space a face may fit turned wrongly, and look well.
-  const bool is_wide = population_.space().max.tail<3>().maxCoeff() > kWide_rad;
+  const SearchSpace& space = population_.space();
+  const bool is_wide =
+      space.max.cwiseAbs().cwiseMax(space.min.cwiseAbs()).tail<3>().maxCoeff() > kWide_rad;
   if (!IsFace(found) || is_wide) found = TryEveryTurn(found);
   if (!IsFace(found)) found = Verify(found);
   return is_wide ? TryAskew(found) : found;

@@ -7,7 +7,8 @@ namespace visavis {
 
 void ScoreMap::Build(const ImageView& image, const ColorModel& model, const PixelBox& box) {
   VISAVIS_THROW_UNLESS(image.width <= width_ && image.height <= height_, image.width);
-  VISAVIS_THROW_UNLESS(box.x0 >= 0 && box.y0 >= 0 && box.x1 <= width_ && box.y1 <= height_, box.x1);
+  VISAVIS_THROW_UNLESS(box.x0 >= 0 && box.y0 >= 0 && box.x1 <= image.width, box.x1);
+  VISAVIS_THROW_UNLESS(box.y1 <= image.height, box.y1);
   box_ = box;
   has_color_ = image.format != PixelFormat::kGray;
   if (!has_color_) {

@@ -13,6 +13,11 @@ constexpr double kPixelsPerM = 800;
 constexpr int kBoxGrid = 16;
 constexpr int kLeastPicture_px = 16;
 constexpr int kLargestWindow_px = 1024;  ///< doubled
+constexpr std::size_t kMostChannels = 3;
+
+std::size_t PixelsOf(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
 
 /// Below 0: doublings.
 int HalvingsFor(const Pinhole& camera, double distance_m) {
@@ -20,20 +25,31 @@ int HalvingsFor(const Pinhole& camera, double distance_m) {
   return static_cast<int>(std::lround(std::log2(ratio)));
 }
 
-/// Of a window, doubled, that shows a head anywhere within @p range_m, @p distance_m away.
-int WindowFor(int picture_px, double focal_px, double range_m, double distance_m) {
-  const double needed = 2 * focal_px * (range_m + 2 * kHeadRadius_m) / distance_m;
-  const int grid = static_cast<int>(std::ceil(needed / kBoxGrid)) * kBoxGrid;
-  return std::min({grid, 2 * picture_px, kLargestWindow_px});
+/// Of a window, doubled, whose middle is @p half_px from what it must show at most.
+int WindowFor(int picture_px, double half_px) {
+  const int needed = static_cast<int>(std::ceil(4 * half_px / kBoxGrid)) * kBoxGrid;
+  return std::min(needed, 2 * picture_px / kBoxGrid * kBoxGrid);
 }
 
-Pinhole DoubledWindow(Pinhole camera, const SearchSpace& space) {
-  camera.distortion = {};
-  camera.width = WindowFor(camera.width, camera.fx, space.range()[0], space.min[2]);
-  camera.height = WindowFor(camera.height, camera.fy, space.range()[1], space.min[2]);
-  camera.fx *= 2;
-  camera.fy *= 2;
-  return camera;
+/// How far from where @p eye sees the middle of @p space it sees a head there at most: across,
+/// down [px].
+Eigen::Vector2d HalfView(const EyeGeometry& eye, const SearchSpace& space) {
+  const auto see = [&](const Eigen::Vector3d& p_C) -> Eigen::Vector3d {
+    return (eye.R_EC * p_C.cast<float>() + eye.p_EC).cast<double>();
+  };
+  const Eigen::Vector3d middle = see(space.middle().head<3>());
+  const Eigen::Array2d focal(eye.fx, eye.fy);
+  Eigen::Array2d half(0, 0);
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d p_C;
+    for (int k = 0; k < 3; ++k) p_C[k] = (corner >> k & 1) == 0 ? space.min[k] : space.max[k];
+    const Eigen::Vector3d p = see(p_C);
+    const double z = std::max(p.z(), kHeadRadius_m);
+    const Eigen::Array2d aside =
+        focal * (p.head<2>().array() / z - middle.head<2>().array() / middle.z()).abs();
+    half = half.max(aside + focal * kHeadRadius_m / z);
+  }
+  return half;
 }
 
 Pinhole Halved(Pinhole camera, int times) {
@@ -127,15 +143,33 @@ WorkingPair::WorkingPair(const StereoRig& rig, double distance_m)
             EyeGeometry(Halved(rig.left, halvings_), rig.X_CL)} {
   RequireSize("right", rig.right, halvings_);
   RequireSize("left", rig.left, halvings_);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t half = kMostChannels * PixelsOf(cameras_[i].width, cameras_[i].height) / 4;
+    if (halvings_ > 0) halved_[i].reserve(half);
+    if (halvings_ > 1) scratch_[i].reserve(half / 4);
+  }
 }
 
 WorkingPair::WorkingPair(const StereoRig& rig, const SearchSpace& space)
     : WorkingPair(rig, space.distance()) {
   if (HalvingsFor(rig.right, space.distance()) >= 0) return;
+  std::array<EyeGeometry, 2> doubled = eyes_;
+  for (EyeGeometry& eye : doubled) {
+    const Eigen::Vector2d half = HalfView(eye, space);
+    eye.width = WindowFor(eye.width, half.x());
+    eye.height = WindowFor(eye.height, half.y());
+    if (!(half.maxCoeff() < kLargestWindow_px) || eye.width > kLargestWindow_px ||
+        eye.height > kLargestWindow_px || eye.width < kBoxGrid || eye.height < kBoxGrid)
+      return;
+    eye.fx *= 2;
+    eye.fy *= 2;
+  }
   is_doubled_ = true;
-  eyes_ = {EyeGeometry(DoubledWindow(rig.right, space), RigidTransform::Identity()),
-           EyeGeometry(DoubledWindow(rig.left, space), rig.X_CL)};
-  LookAt(0.5 * (space.min + space.max).head<3>());
+  eyes_ = doubled;
+  for (std::size_t i = 0; i < 2; ++i)
+    halved_[i].reserve(kMostChannels * PixelsOf(eyes_[i].width, eyes_[i].height));
+  blended_.reserve(kMostChannels * static_cast<std::size_t>(kLargestWindow_px));
+  LookAt(space.middle().head<3>());
 }
 
 void WorkingPair::LookAt(const Eigen::Vector3d& p_C) {
@@ -159,6 +193,7 @@ void WorkingPair::LookAt(const Eigen::Vector3d& p_C) {
 std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::size_t i) {
   std::optional<ImageView> picture = i == 0 ? frame.right : frame.left;
   if (!picture) return picture;
+  sources_[i] = *picture;
   if (is_doubled_) {
     windows_[i] = *picture;
     ImageView& window = windows_[i];
@@ -168,7 +203,6 @@ std::optional<ImageView> WorkingPair::Picture(const StereoFrame& frame, std::siz
     window.size = static_cast<std::size_t>(window.stride) * static_cast<std::size_t>(window.height);
     if (halved_[i].size() < window.size) halved_[i].resize(window.size);
     window.data = halved_[i].data();
-    sources_[i] = *picture;
     filled_[i] = {};
     return window;
   }

@@ -15,14 +15,16 @@ inline constexpr double kHeadRadius_m = 0.17;  ///< from M's origin: all of a he
 inline constexpr int kLeastBox_px = 32;        ///< a smaller part of a picture shows no head
 
 /// The stereo pair at the resolution that the refined estimator works at, about 0.8 px a mm on the
-/// head: larger pictures are halved until then, and of smaller ones a window is doubled.
+/// head: larger pictures are halved until then, and of smaller ones a window is doubled, where one
+/// of a bearable size shows all of the search space.
 class WorkingPair {
  public:
   /// @p distance_m: where the head is expected. Nothing is doubled.
   /// @throws std::invalid_argument naming camera, field, value and rule for pictures that are too
   /// small at that resolution.
   WorkingPair(const StereoRig& rig, double distance_m);
-  /// The head is expected in @p space. Doubled windows show a head anywhere in it.
+  /// The head is expected in @p space. Doubled windows that look at its middle show a head anywhere
+  /// in it.
   /// @throws std::invalid_argument likewise.
   WorkingPair(const StereoRig& rig, const SearchSpace& space);
 
@@ -38,6 +40,8 @@ class WorkingPair {
   /// The camera's picture, its halvings or its doubled window, of which Fill makes the pixels;
   /// nothing where @p frame has none. Right, left.
   std::optional<ImageView> Picture(const StereoFrame& frame, std::size_t i);
+  /// The camera's picture that the last Picture was made of, while its frame lives.
+  const ImageView& source(std::size_t i) const { return sources_[i]; }
   /// The pixels of the last Picture within @p box, while its frame lives. Borders must be even.
   void Fill(std::size_t i, const PixelBox& box);
 
@@ -53,7 +57,7 @@ class WorkingPair {
   std::array<EyeGeometry, 2> eyes_;
   std::array<std::array<int, 2>, 2> corners_{};  ///< x, y of the windows in the pictures [px]
   std::array<std::vector<std::uint8_t>, 2> halved_, scratch_;
-  std::array<ImageView, 2> sources_, windows_;  ///< of doubled pictures
+  std::array<ImageView, 2> sources_, windows_;
   std::array<PixelBox, 2> filled_;
   std::vector<std::uint16_t> blended_;
 };

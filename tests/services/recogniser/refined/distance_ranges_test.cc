@@ -58,8 +58,8 @@ TEST(DistanceRangesTest, AHeadAtABorderStaysInItsPart) {
   EXPECT_EQ(ranges.At(1.4), 1u);
   EXPECT_EQ(ranges.At(0.1), 0u);
   EXPECT_EQ(ranges.At(9), 1u);
-  EXPECT_EQ(ranges.At(1.05, 0), 0u);
-  EXPECT_EQ(ranges.At(0.95, 1), 1u);
+  EXPECT_EQ(ranges.At(1.03, 0), 0u);
+  EXPECT_EQ(ranges.At(0.97, 1), 1u);
   EXPECT_EQ(ranges.At(1.1, 0), 1u);
   EXPECT_EQ(ranges.At(0.9, 1), 0u);
 }

@@ -72,34 +72,6 @@ TEST_F(RefinedEstimatorTest, FollowsAHeadThatMoves) {
   }
 }
 
-TEST_F(RefinedEstimatorTest, InADeepSpaceAHeadIsFoundNearAndFarWithinItsParts) {
-  SearchSpace space = RecogniserConfig{}.RefinedSettings().space;
-  space.min[2] = 0.4;
-  space.max[2] = 3;
-  estimator_.SetSearchSpace(space);
-  for (const double z_mm : {550.0, 1000.0, 2200.0}) {
-    estimator_.Reset();
-    const Vector6d place = PhiOf(30, -20, z_mm, 4, -8, 5);
-    int searched = 0;
-    while (searched < 6 && SeeHeadAt(place).status != TrackStatus::kTracking) ++searched;
-    EXPECT_LT(searched, 6) << z_mm;
-    ExpectTracked(SeeHeadAt(place), 4 * std::max(1.0, 1e-3 * z_mm), 4);
-  }
-}
-
-TEST_F(RefinedEstimatorTest, AHeadThatWalksAwayIsTrackedThroughAllPartsOfTheSpace) {
-  SearchSpace space = RecogniserConfig{}.RefinedSettings().space;
-  space.min[2] = 0.5;
-  space.max[2] = 2.4;
-  estimator_.SetSearchSpace(space);
-  double z_mm = 700;
-  SeeHeadAt(PhiOf(20, -20, z_mm, 4, -8, 5));
-  for (; z_mm < 1900; z_mm *= 1.02)
-    ExpectTracked(SeeHeadAt(PhiOf(20, -20, z_mm, 4, -8, 5)), 5 * std::max(1.0, 1e-3 * z_mm), 4);
-  for (; z_mm > 800; z_mm /= 1.02)
-    ExpectTracked(SeeHeadAt(PhiOf(20, -20, z_mm, 4, -8, 5)), 5 * std::max(1.0, 1e-3 * z_mm), 4);
-}
-
 TEST_F(RefinedEstimatorTest, TheFeedforwardCarriesTheHeadOverALargeStepOfTheCamera) {
   SeeHeadAt(kPlace);
   CameraStep step;

@@ -263,8 +263,10 @@ TEST(WorkingPairTest, ADoubledPixelIsInterpolated) {
   rig.right.height = rig.left.height = 40;
   WorkingPair pair(rig, FarSpace());
   ASSERT_TRUE(pair.is_doubled());
-  ASSERT_EQ(pair.eye(0).width, 120);
+  ASSERT_EQ(pair.eye(0).width, 112);  // a multiple of 16
   ASSERT_EQ(pair.eye(0).height, 80);
+  const double first_u = rig.left.cx + 0.5 - (pair.eye(1).cx + 0.5) / 2;
+  const double first_v = rig.left.cy + 0.5 - (pair.eye(1).cy + 0.5) / 2;
   Random random(9);
   const OwnedImage rgb = NoiseImage(60, 40, &random), gray = GrayImage(rgb.view);
   for (const OwnedImage* image : {&rgb, &gray}) {
@@ -277,7 +279,8 @@ TEST(WorkingPairTest, ADoubledPixelIsInterpolated) {
       pair.Fill(1, box);
       for (int y = box.y0; y < box.y1; ++y) {
         for (int i = box.x0 * channels; i < box.x1 * channels; ++i) {
-          const double u = (i / channels + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
+          const double u = first_u + (i / channels + 0.5) / 2 - 0.5;
+          const double v = first_v + (y + 0.5) / 2 - 0.5;
           const auto at = [&](double column, double row) {
             const int x = std::clamp(static_cast<int>(column), 0, from.width - 1);
             return double(from.row(std::clamp(static_cast<int>(row), 0,
