@@ -115,7 +115,6 @@ int RefinedEstimator::Lowered(int count, double share, int least) {
 
 void RefinedEstimator::CentreOn(const Eigen::Vector3d& p_CM) {
   WorkIn(ranges_.At(p_CM.z(), range_));
-  searched_range_ = range_;
   if (!settings_.recentre) {
     population_.SetSpace(ranges_.space(range_));
     return;
@@ -301,16 +300,22 @@ void RefinedEstimator::Judge(bool good) {
 void RefinedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking || bad_in_a_row_ == 0) {
     CentreOn(X_CM_->translation());
-  } else if (strange_in_a_row_ > 0) {
-    // A stranger is looked at again.
-  } else if (centre_ && bad_in_a_row_ % 2 == 0) {
+    searched_range_ = (range_ + ranges_.size() - 1) % ranges_.size();  // its own comes next
+    return;
+  }
+  // Where a stranger was seen is looked at again.
+  const bool stays = strange_in_a_row_ > 0;
+  const bool is_centre_here = centre_ && ranges_.At(centre_->z(), range_) == range_;
+  if (centre_ && bad_in_a_row_ % 2 == 0 && (!stays || is_centre_here)) {
     CentreOn(*centre_);
-  } else {
-    is_centred_ = false;
+    return;
+  }
+  is_centred_ = false;
+  if (!stays) {
     searched_range_ = (searched_range_ + 1) % ranges_.size();
     WorkIn(searched_range_);
-    population_.SetSpace(ranges_.space(range_));
   }
+  population_.SetSpace(ranges_.space(range_));
 }
 
 Matrix6d RefinedEstimator::Covariance(bool good) const {

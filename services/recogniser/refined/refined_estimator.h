@@ -111,6 +111,7 @@ class RefinedEstimator final : public Estimator {
   bool BothEyes() const { return view_[0].seen() && view_[1].seen(); }
   bool IsPlausible(const RigidTransform& X_CM) const;
   bool IsFace(const Candidate& candidate) const;
+  bool IsClearFace(const Candidate& candidate) const;
   /// Its colours are a head's, whatever its face is.
   bool IsHead(const Candidate& candidate) const;
   bool IsPromising(const Candidate& candidate) const;

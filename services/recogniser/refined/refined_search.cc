@@ -23,6 +23,7 @@ constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;   ///< best places that are verified
 constexpr int kVerifyRounds = 2, kMoreRounds = 2;
+constexpr double kClearNcc = 0.5;  ///< of the generic face
 constexpr double kPromisingInside = 0.4, kPromisingOutside = -0.15;
 constexpr int kMostFaces = 4;          ///< that are told apart by search.nearest_to
 constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
@@ -273,9 +274,10 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
       colors_best_ = colors_;
     }
     places[tried++] = X;
-    if (tried == kVerified) break;
+    if (tried == kVerified || IsClearFace(*best)) break;
   }
   colors_ = colors_best_;
+  if (IsClearFace(*best)) return *best;
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);
@@ -287,6 +289,11 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   if (!IsFace(found) || is_wide) found = TryEveryTurn(found);
   if (!IsFace(found)) found = Verify(found);
   return is_wide ? TryAskew(found) : found;
+}
+
+// It looks like the generic face so much that it is turned as that is.
+bool RefinedEstimator::IsClearFace(const Candidate& c) const {
+  return IsFace(c) && c.score.ncc > kClearNcc;
 }
 
 bool RefinedEstimator::IsHead(const Candidate& c) const {

@@ -141,6 +141,25 @@ TEST_F(DeepSpaceTest, SomebodyElseIsTakenUpAsSoonAsInASpaceOfOnePart) {
   }
 }
 
+TEST_F(DeepSpaceTest, AHeadThatJumpsIsFoundAgain) {
+  struct Jump {
+    double from_mm, to_mm;
+    int frames;  ///< its own part is searched first, its last place and the others by turns
+  };
+  for (const Jump& jump : {Jump{600, 650, 3}, Jump{1000, 1100, 3}, Jump{2200, 2300, 3},
+                           Jump{2200, 600, 10}, Jump{600, 2200, 10}, Jump{1000, 2200, 10}}) {
+    Begin(Between(0.4, 3));
+    Vector6d place = PlaceAt(jump.from_mm);
+    for (int i = 0; i < 25; ++i) SeeHeadAt(place);
+    ExpectAt(place, See());
+    place = PlaceAt(jump.to_mm);
+    place.head<2>() += Eigen::Vector2d(-0.12, 0.05);
+    scene_.Show(TransformFromPhi(place), FeaturedHead);
+    EXPECT_LE(FramesToFind(20), jump.frames) << jump.from_mm << " to " << jump.to_mm;
+    ExpectAt(place, See());
+  }
+}
+
 TEST_F(DeepSpaceTest, TheNearestFaceIsTakenWhicheverPartItIsIn) {
   RefinedSettings settings = Between(0.5, 2.0);  // cut at 1 m
   settings.space.min[0] = -0.25;
