@@ -182,6 +182,11 @@ void HeadBundle::RebuildModel() {
                                                          start_.p_MR_m, std::nullopt});
 }
 
+void HeadBundle::Rebase() {
+  for (std::size_t i = 0; i < displaced_.size(); ++i) start_table_.radii_m[i] += displaced_[i];
+  std::fill(displaced_.begin(), displaced_.end(), 0.0f);
+}
+
 void HeadBundle::MoveFrame(const RigidTransform& X_MN) {
   const RigidTransform X_NM = X_MN.inverse();
   for (HeadView& view : views_) view.X_CM = view.X_CM * X_NM;

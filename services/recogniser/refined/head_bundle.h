@@ -55,6 +55,9 @@ class HeadBundle {
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
 
+  /// The prior that holds the shape to the one it began with holds it to what it is now.
+  void Rebase();
+
   /// Moves the head's frame on it: poses and shape are told from M afterwards.
   void MoveFrame(const RigidTransform& X_MN);
 
@@ -81,7 +84,7 @@ class HeadBundle {
 
   const RefinerConfig config_;
   const HeadGeometry start_;
-  const HeadTable start_table_;
+  HeadTable start_table_;
   WorkingPair pair_;
   std::array<ColorModel, 2> colors_;
   std::array<std::vector<std::uint8_t>, 2> unfolded_;

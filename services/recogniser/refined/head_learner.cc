@@ -10,6 +10,7 @@ constexpr int kFrames = 15, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
 constexpr int kLongest = 150;                    ///< frames after which one view more will do
 constexpr int kTurns = 2, kRounds = 2;           ///< of the bundle, each turn with a new frame
+constexpr std::size_t kFreeViews = 3;            ///< so many tell the shape without the generic one
 
 }  // namespace
 
@@ -32,6 +33,7 @@ struct HeadLearner::Work {
     const std::size_t last = bundle->num_views() - 1;
     const RigidTransform X_CN = bundle->pose(last);
     for (int turn = 0; turn < kTurns; ++turn) {
+      if (bundle->num_views() >= kFreeViews) bundle->Rebase();
       for (int round = 0; round < kRounds; ++round) bundle->Round();
       const HeadGeometry head = bundle->Enrolled();
       bundle->MoveFrame(finder->Find(*head.face, head.surface, Anchor().inverse().translation()));
