@@ -25,4 +25,16 @@ struct ImageView {
   const std::uint8_t* row(int y) const { return data + static_cast<std::ptrdiff_t>(y) * stride; }
 };
 
+/// Where the channels of a pixel lie in a kRgb, kBgr or kGray picture [bytes]. A grey level is a
+/// colour whose channels are equal.
+struct Channels {
+  explicit Channels(PixelFormat format)
+      : step(BytesPerPixel(format)),
+        red(format == PixelFormat::kBgr ? 2 : 0),
+        green(step == 1 ? 0 : 1),
+        blue(step == 1 ? 0 : 2 - red) {}
+  int step;  ///< from one pixel to the next
+  int red, green, blue;
+};
+
 }  // namespace visavis

@@ -81,8 +81,10 @@ MeshScene::MeshScene(const StereoRig& rig)
 
 ImageView MeshScene::picture(std::size_t eye) const {
   const Eye& e = eyes_[eye];
-  return {e.pixels.data()->data(), e.geometry.width,    e.geometry.height,
-          3 * e.geometry.width,    3 * e.pixels.size(), PixelFormat::kRgb};
+  const int width = e.geometry.width, height = e.geometry.height;
+  if (e.is_gray) return {e.gray.data(), width, height, width, e.gray.size(), PixelFormat::kGray};
+  return {e.pixels.data()->data(), width, height, 3 * width, 3 * e.pixels.size(),
+          PixelFormat::kRgb};
 }
 
 // Pixel by pixel of the triangle's box: barycentric weights, linear in the picture; what they
@@ -145,12 +147,13 @@ void MeshScene::Paint(const RigidTransform& X_CM, const Painter& painter, Eye* e
 
 void MeshScene::LearnColors(const ImageView& picture, Eye* eye) {
   eye->colors.StartFrom(picture);
+  const Channels channels(picture.format);
   const auto counts = std::make_unique<ColorModel::Counts>();
   for (int round = 0; round < 6; ++round) {
     counts->Clear();
     for (std::size_t i = 0; i < eye->pixels.size(); ++i) {
-      const auto& [r, g, b] = eye->pixels[i];
-      counts->Add(static_cast<ColorClass>(eye->classes[i]), ColorModel::BinOf(r, g, b));
+      const std::uint8_t* pixel = picture.data + i * static_cast<std::size_t>(channels.step);
+      counts->Add(static_cast<ColorClass>(eye->classes[i]), ColorModel::BinOf(pixel, channels));
     }
     eye->colors.Learn(counts.get());
   }
@@ -162,33 +165,27 @@ const StereoView& MeshScene::Show(const RigidTransform& X_CM, const Painter& pai
 
 const StereoView& MeshScene::ShowAll(const std::vector<RigidTransform>& X_CM,
                                      const Painter& painter) {
+  return Show(X_CM, painter, false);
+}
+
+const StereoView& MeshScene::ShowGray(const RigidTransform& X_CM, const Painter& painter) {
+  return Show({X_CM}, painter, true);
+}
+
+const StereoView& MeshScene::Show(const std::vector<RigidTransform>& X_CM, const Painter& painter,
+                                  bool is_gray) {
   for (std::size_t i = 0; i < 2; ++i) {
     Eye& eye = eyes_[i];
     PaintWall(&eye);
     for (const RigidTransform& X : X_CM) Paint(X, painter, &eye);
+    eye.is_gray = is_gray;
+    std::transform(eye.pixels.begin(), eye.pixels.end(), eye.gray.begin(), [](const Color& c) {
+      return static_cast<std::uint8_t>((77 * c[0] + 150 * c[1] + 29 * c[2] + 128) / 256);
+    });
     LearnColors(picture(i), &eye);
     const PixelBox whole{0, 0, eye.geometry.width / 16 * 16, eye.geometry.height / 16 * 16};
     eye.scores.Build(picture(i), eye.colors, whole);
     eye.bands.Build(picture(i), whole);
-    view_[i] = {&eye.geometry, &eye.scores, &eye.bands};
-  }
-  return view_;
-}
-
-const StereoView& MeshScene::ShowGray(const RigidTransform& X_CM, const Painter& painter) {
-  for (std::size_t i = 0; i < 2; ++i) {
-    Eye& eye = eyes_[i];
-    PaintWall(&eye);
-    Paint(X_CM, painter, &eye);
-    std::transform(eye.pixels.begin(), eye.pixels.end(), eye.gray.begin(), [](const Color& c) {
-      return static_cast<std::uint8_t>((77 * c[0] + 150 * c[1] + 29 * c[2] + 128) / 256);
-    });
-    const int width = eye.geometry.width, height = eye.geometry.height;
-    const ImageView picture{eye.gray.data(), width,           height,
-                            width,           eye.gray.size(), PixelFormat::kGray};
-    const PixelBox whole{0, 0, width / 16 * 16, height / 16 * 16};
-    eye.scores.Build(picture, eye.colors, whole);
-    eye.bands.Build(picture, whole);
     view_[i] = {&eye.geometry, &eye.scores, &eye.bands};
   }
   return view_;

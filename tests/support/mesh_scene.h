@@ -67,7 +67,10 @@ class MeshScene {
     std::vector<Color> pixels;
     std::vector<std::uint8_t> gray, classes;  // ColorClass
     std::vector<float> depth;
+    bool is_gray{false};
   };
+  const StereoView& Show(const std::vector<RigidTransform>& X_CM, const Painter& painter,
+                         bool is_gray);
   static void PaintWall(Eye* eye);
   static void Paint(const RigidTransform& X_CM, const Painter& painter, Eye* eye);
   static void Fill(const std::array<Eigen::Vector3f, 3>& corners_M,

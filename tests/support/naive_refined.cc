@@ -99,7 +99,7 @@ MeshScore NaiveMeshFitness::Evaluate(const StereoView& view, const RigidTransfor
     score.outside += 0.5 * Outside(eye, X_CM);
     score.ncc += 0.5 * Correlation(eye, X_CM);
   }
-  score.has_color = score.has_ncc = true;
+  score.has_ncc = true;
   return score;
 }
 

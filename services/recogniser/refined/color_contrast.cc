@@ -50,9 +50,8 @@ ColorContrast::ColorContrast(const HeadMesh& mesh) {
 
 double ColorContrast::Of(const ImageView& picture, const EyeGeometry& eye,
                          const RigidTransform& X_CM) const {
-  if (picture.format == PixelFormat::kGray) return 0;
   const EyePose pose(eye, X_CM);
-  const int red = picture.format == PixelFormat::kBgr ? 2 : 0;
+  const Channels channels(picture.format);
   Histogram skin, hair, round;
   const auto add = [&](const Vector3f& p_M, Histogram* histogram) {
     const Vector3f p = pose.InEye(p_M);
@@ -62,8 +61,10 @@ double ColorContrast::Of(const ImageView& picture, const EyeGeometry& eye,
     if (!(u >= 0 && v >= 0 && u < static_cast<float>(eye.width) &&
           v < static_cast<float>(eye.height)))
       return;
-    const std::uint8_t* rgb = picture.row(static_cast<int>(v)) + 3 * static_cast<std::ptrdiff_t>(u);
-    histogram->Add((rgb[red] >> kShift) << 6 | (rgb[1] >> kShift) << 3 | rgb[2 - red] >> kShift);
+    const std::uint8_t* pixel =
+        picture.row(static_cast<int>(v)) + channels.step * static_cast<std::ptrdiff_t>(u);
+    const auto level = [&](int channel) { return pixel[channel] >> kShift; };
+    histogram->Add(level(channels.red) << 6 | level(channels.green) << 3 | level(channels.blue));
   };
   const auto facing = [&](const Point& point) {
     const Vector3f ray = point.p - pose.p_ME;

@@ -70,12 +70,11 @@ void ColorModel::Reset() {
 void ColorModel::StartFrom(const ImageView& image) {
   std::vector<float>& bins = shares_[kSurroundings];
   std::fill(bins.begin(), bins.end(), 0.0f);
-  const int red = image.format == PixelFormat::kBgr ? 2 : 0;
+  const Channels channels(image.format);
   for (int y = 0; y < image.height; y += 2) {
     const std::uint8_t* p = image.row(y);
-    for (int x = 0; x < image.width; x += 2, p += 6) {
-      bins[static_cast<std::size_t>(BinOf(p[red], p[1], p[2 - red]))] += 1;
-    }
+    for (int x = 0; x < image.width; x += 2, p += 2 * channels.step)
+      bins[static_cast<std::size_t>(BinOf(p, channels))] += 1;
   }
   Blur(bins.data(), 0.6f);
   Start();

@@ -32,13 +32,16 @@ class ColorModel {
   static int BinOf(int red, int green, int blue) {
     return (red >> 4) << 8 | (green >> 4) << 4 | blue >> 4;
   }
+  static int BinOf(const std::uint8_t* pixel, const Channels& c) {
+    return BinOf(pixel[c.red], pixel[c.green], pixel[c.blue]);
+  }
 
   ColorModel();
 
   /// Back to the prior.
   void Reset();
-  /// Starts from a whole colour picture, which stands for the surroundings: what a room is full of
-  /// tells little of a head, be it as red as skin.
+  /// Starts from a whole kRgb, kBgr or kGray picture, which stands for the surroundings: what a
+  /// room is full of tells little of a head, be it as red as skin.
   void StartFrom(const ImageView& image);
 
   /// New observations: counts a bin, by class.

@@ -129,7 +129,6 @@ void ContourTerm::Measure(const EyeView& eye, const KernelEye& kernel_eye, int r
 
 void ContourTerm::Add(const EyeView& eye, const EyePose& pose, int reach_px, float outline_weight,
                       float hairline_weight, PoseEquations* equations, ContourFit* fit) {
-  if (!eye.scores->has_color()) return;
   const int reach = std::clamp(reach_px, 2, kMaxContourReach);
   const KernelEye kernel_eye(*eye.geometry, pose);
   FindSilhouette(kernel_eye, pose);

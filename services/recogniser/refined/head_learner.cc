@@ -1,5 +1,7 @@
 #include "services/recogniser/refined/head_learner.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace visavis {
@@ -10,7 +12,7 @@ constexpr int kFrames = 15, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
 constexpr int kLongest = 150;                    ///< frames after which one view more will do
 constexpr int kTurns = 2, kRounds = 2;           ///< of the bundle, each turn with a new frame
-constexpr std::size_t kFreeViews = 3;            ///< so many tell the shape without the generic one
+constexpr double kWidely_rad = 0.35;             ///< between two of the views
 
 }  // namespace
 
@@ -33,13 +35,22 @@ struct HeadLearner::Work {
     const std::size_t last = bundle->num_views() - 1;
     const RigidTransform X_CN = bundle->pose(last);
     for (int turn = 0; turn < kTurns; ++turn) {
-      if (bundle->num_views() >= kFreeViews) bundle->Rebase();
+      if (IsSeenWidely()) bundle->Rebase();  // then the generic shape has nothing to add
       for (int round = 0; round < kRounds; ++round) bundle->Round();
       const HeadGeometry head = bundle->Enrolled();
       bundle->MoveFrame(finder->Find(*head.face, head.surface, Anchor().inverse().translation()));
     }
     learned.head = std::make_unique<PreparedHead>(config, bundle->Enrolled());
     learned.X_MN = bundle->pose(last).inverse() * X_CN;
+  }
+
+  bool IsSeenWidely() const {
+    double least = 1;  // cosine
+    for (std::size_t i = 0; i < bundle->num_views(); ++i) {
+      for (std::size_t k = 0; k < i; ++k)
+        least = std::min(least, TowardsCamera(bundle->pose(i)).dot(TowardsCamera(bundle->pose(k))));
+    }
+    return least < std::cos(kWidely_rad);
   }
 
   /// X_AN: the frame that the first views were told in, from the bundle's.

@@ -45,8 +45,7 @@ void SortByDirection(const std::vector<Vector3f>& normals, std::vector<std::size
 }  // namespace
 
 double MeshScore::total() const {
-  return (has_color ? 0.5 * (inside - std::max(outside, -1.0)) : 0) +
-         (has_ncc ? kNccWeight * ncc : 0);
+  return 0.5 * (inside - std::max(outside, -1.0)) + (has_ncc ? kNccWeight * ncc : 0);
 }
 
 MeshFitness::MeshFitness(const HeadMesh& mesh, const FacePoints& face, int detail) {
@@ -117,18 +116,17 @@ void MeshFitness::AddAgreement(const StereoView& view, const Poses& poses, MeshS
 void MeshFitness::AddInside(const StereoView& view, const Poses& poses, MeshScore* score) const {
   int eyes = 0;
   for (std::size_t e = 0; e < 2; ++e) {
-    if (!view[e].seen() || !view[e].scores->has_color()) continue;
+    if (!view[e].seen()) continue;
     score->inside += Mean(SumScores(poses[e], view[e].scores->view(), inside_, kSurface, -kFar));
     ++eyes;
   }
-  score->has_color = eyes > 0;
   score->inside /= std::max(eyes, 1);
 }
 
 void MeshFitness::AddOutside(const StereoView& view, const Poses& poses, MeshScore* score) const {
   int eyes = 0;
   for (std::size_t e = 0; e < 2; ++e) {
-    if (!view[e].seen() || !view[e].scores->has_color()) continue;
+    if (!view[e].seen()) continue;
     const ScoreSum sum = SumScores(poses[e], view[e].scores->view(), outside_, kRound,
                                    -kGrazing * poses[e].distance);
     score->outside += Mean(sum);

@@ -17,7 +17,7 @@ struct MeshScore {
   double outside{0};    ///< colours round the head: about 1 where they are a head's too (bad)
   double ncc{0};        ///< correlation of the coarse band with the face's pattern, -1 to 1
   double agreement{0};  ///< correlation of both eyes' coarse bands on the face, -1 to 1
-  bool has_color{false}, has_ncc{false};
+  bool has_ncc{false};
   /// What a track's population maximises.
   double total() const;
   /// What the search maximises: a likeness that both eyes see at one depth.

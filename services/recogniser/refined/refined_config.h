@@ -18,9 +18,9 @@ struct EvidenceConfig {
   template <typename A>
   void Serialize(A* a) {
     a->Visit("lock_ncc", &lock_ncc, InRange(-1.0, 1.0));
-    a->Visit("lock_gray_ncc", &lock_gray_ncc, InRange(-1.0, 1.0));
+    a->Visit("alone_ncc", &alone_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_stereo_ncc", &lock_stereo_ncc, InRange(-1.0, 1.0));
-    a->Visit("lock_gray_stereo_ncc", &lock_gray_stereo_ncc, InRange(-1.0, 1.0));
+    a->Visit("alone_stereo_ncc", &alone_stereo_ncc, InRange(-1.0, 1.0));
     a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
     a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
     a->Visit("vague_ncc", &vague_ncc, InRange(-1.0, 1.0));
@@ -34,16 +34,17 @@ struct EvidenceConfig {
     a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
     a->Visit("one_eye_frames", &one_eye_frames, InRange(0, 1000000));
   }
-  double lock_ncc{0.2};               ///< generic pattern, before TRACKING
-  double lock_gray_ncc{0.5};          ///< the same where the pictures are grey
-  double lock_stereo_ncc{0.92};       ///< agreement of both eyes, before TRACKING
-  double lock_gray_stereo_ncc{0.96};  ///< the same where the pictures are grey
-  double lock_outside{-0.5};          ///< at most: how much the surroundings look like a head
-  double lock_inside{0.4};            ///< at least: how much the inside does
+  double lock_ncc{0.2};          ///< generic pattern, before TRACKING
+  double lock_stereo_ncc{0.92};  ///< agreement of both eyes, before TRACKING
+  double lock_outside{-0.5};     ///< at most: how much the surroundings look like a head
+  double lock_inside{0.4};       ///< at least: how much the inside does
   /// Where the wall is like skin or hair, colours tell less, and the rest must tell more.
-  double vague_ncc{0.45};            ///< generic pattern
-  double vague_outside{-0.3};        ///< at most
-  double vague_inside{0.5};          ///< at least
+  double vague_ncc{0.45};      ///< generic pattern
+  double vague_outside{-0.3};  ///< at most
+  double vague_inside{0.5};    ///< at least
+  /// Where colours tell hardly anything, the features alone must.
+  double alone_ncc{0.5};             ///< generic pattern
+  double alone_stereo_ncc{0.96};     ///< agreement of both eyes
   double enrolled_texture_ncc{0.8};  ///< an enrolled face, to be found
   double keep_texture_ncc{0.6};      ///< learned texture, while TRACKING
   double keep_ncc{0.1};              ///< generic pattern, while TRACKING

@@ -9,8 +9,6 @@ namespace {
 constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the enrolled face
 constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
-constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
-constexpr double kBeyond = 0.08;                      ///< of its distance, likewise
 
 }  // namespace
 
@@ -137,7 +135,7 @@ void RefinedEstimator::LookInto(std::size_t range) {
 void RefinedEstimator::TakePictures() {
   for (std::size_t i = 0; i < 2; ++i) {
     pictures_[i] = pair().Picture(*frame_, i);
-    if (colors_started_[i] || !pictures_[i] || pictures_[i]->format == PixelFormat::kGray) continue;
+    if (colors_started_[i] || !pictures_[i]) continue;
     if (pair().is_doubled()) pair().Fill(i, pair().WholeBox(i));
     colors_[i].StartFrom(*pictures_[i]);
     colors_started_[i] = true;
@@ -230,69 +228,8 @@ std::optional<RefinedEstimator::Candidate> RefinedEstimator::WhereLost() {
   if (ranges_.At(known_X_CM_->translation().z(), range_) != range_) return {};
   const Candidate known =
       RefineFrom(*known_X_CM_, &texture_, settings_.refined.search_iterations, 9);
-  if (!IsKnownFace(known, FindTextureNcc())) return {};
+  if (!IsKnownAgain(known)) return {};
   return known;
-}
-
-bool RefinedEstimator::IsPlausible(const RigidTransform& X_CM) const {
-  if (!X_CM.matrix().allFinite()) return false;
-  const Vector6d phi = PhiFromTransform(X_CM);
-  const SearchSpace& space = population_.space();
-  return ((phi - space.min).tail<3>().array() > -kBeyond_rad).all() &&
-         ((space.max - phi).tail<3>().array() > -kBeyond_rad).all() &&
-         phi[2] > space.min[2] - std::max(kBeyond_m, kBeyond * space.min[2]) &&
-         phi[2] < space.max[2] + std::max(kBeyond_m, kBeyond * space.max[2]);
-}
-
-// What a face must show whoever it is. Where colours tell little, its features must tell more, and
-// where they tell nothing, as much as in grey pictures.
-bool RefinedEstimator::IsFace(const Candidate& c) const {
-  const EvidenceConfig& e = settings_.refined.evidence;
-  if (!IsPlausible(c.refined.X_CM) || !c.refined.converged() || !BothEyes()) return false;
-  const MeshScore& s = c.score;
-  const auto shows = [&](double ncc, double stereo_ncc) {
-    return s.ncc > ncc && c.refined.stereo_ncc > stereo_ncc;
-  };
-  if (shows(e.lock_gray_ncc, e.lock_gray_stereo_ncc) &&
-      (!s.has_color || (s.outside < 0 && s.inside > 0)))
-    return true;
-  if (!s.has_color || !shows(e.lock_ncc, e.lock_stereo_ncc)) return false;
-  return (s.outside < e.lock_outside && s.inside > e.lock_inside) ||
-         (s.outside < e.vague_outside && s.inside > e.vague_inside && s.ncc > e.vague_ncc);
-}
-
-// What the face that was learned must show.
-bool RefinedEstimator::IsKnownFace(const Candidate& c, double least_texture_ncc) const {
-  return texture_.learned() && HasLooks(c, least_texture_ncc);
-}
-
-bool RefinedEstimator::HasLooks(const Candidate& c, double least_texture_ncc) const {
-  const EvidenceConfig& e = settings_.refined.evidence;
-  return IsPlausible(c.refined.X_CM) && c.refined.converged() &&
-         c.refined.texture_ncc > least_texture_ncc && c.score.ncc > e.keep_ncc &&
-         (!BothEyes() || c.refined.stereo_ncc > e.keep_stereo_ncc);
-}
-
-// A face, but not as learned: it is another one, or the texture was wrong. Then it is learned anew.
-bool RefinedEstimator::IsNewFace() {
-  strange_in_a_row_ = IsFace(candidate_) ? strange_in_a_row_ + 1 : 0;
-  if (strange_in_a_row_ == 0) return false;
-  if (texture_.learned() && strange_in_a_row_ < settings_.refined.evidence.strange_frames)
-    return false;
-  ForgetFace();
-  return true;
-}
-
-void RefinedEstimator::Judge(bool good) {
-  good_in_a_row_ = good ? good_in_a_row_ + 1 : 0;
-  bad_in_a_row_ = good ? 0 : bad_in_a_row_ + 1;
-  const EvidenceConfig& e = settings_.refined.evidence;
-  TrackStatus& status = estimate_.status;
-  if (status == TrackStatus::kTracking) {
-    if (bad_in_a_row_ > 0) status = TrackStatus::kLost;
-  } else if (good_in_a_row_ >= e.confirm_frames) {
-    status = TrackStatus::kTracking;
-  }
 }
 
 // The search space moves with a tracked head; a lost one is looked for where the configuration puts
@@ -369,7 +306,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     const std::optional<Candidate> there = WhereLost();
     candidate_ = there ? *there : SearchNearest();
     // One eye can keep a track for a while, not begin one: its depth is a guess.
-    const bool known = IsKnownFace(candidate_, FindTextureNcc());
+    const bool known = IsKnownAgain(candidate_);
     if (known || !BothEyes()) strange_in_a_row_ = 0;
     good = BothEyes() && (known || IsNewFace());
     if (!good) colors_ = colors_before_;

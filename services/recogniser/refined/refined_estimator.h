@@ -52,14 +52,9 @@ class RefinedEstimator final : public Estimator {
     MeshScore score;  ///< against the generic pattern
 
     /// What decides between candidates: the fitness, how far both eyes agree on the surface, and
-    /// how well the contours lie. On grey pictures there are no contours, and the pattern is met
-    /// with by chance: there the agreement counts by its likelihood.
+    /// how well the contours lie.
     double merit() const {
-      const double stereo = refined.stereo_ncc;
-      const double agreement =
-          score.has_color ? stereo
-                          : -0.5 * std::log(1 - std::min(stereo * std::abs(stereo), 0.999));
-      const double merit = score.total() + agreement - 0.2 * refined.contour.rms_px();
+      const double merit = score.total() + refined.stereo_ncc - 0.2 * refined.contour.rms_px();
       return std::isfinite(merit) ? merit : -1e9;
     }
   };
@@ -116,10 +111,8 @@ class RefinedEstimator final : public Estimator {
   bool IsHead(const Candidate& candidate) const;
   bool IsPromising(const Candidate& candidate) const;
   bool IsKnownFace(const Candidate& candidate, double least_texture_ncc) const;
-  double FindTextureNcc() const {
-    const EvidenceConfig& e = settings_.refined.evidence;
-    return knows_enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc;
-  }
+  /// The learned face, where it was not a frame before.
+  bool IsKnownAgain(const Candidate& candidate) const;
   /// What the face of the texture that @p candidate was refined with must show.
   bool HasLooks(const Candidate& candidate, double least_texture_ncc) const;
   /// A space of poses of R as one of poses of M: their places differ by the offset, at any small

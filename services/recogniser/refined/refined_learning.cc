@@ -16,11 +16,11 @@ constexpr double kLeastDetail = 300;  ///< [px] to a metre, likewise
 
 void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
   for (std::size_t i = 0; i < 2; ++i) {
-    if (!view_[i].seen() || !scores_[i].has_color()) continue;
+    if (!view_[i].seen()) continue;
     const EyePose pose(pair().eye(i), X_CM);
     const EyeGeometry& g = pair().eye(i);
     const ImageView& picture = *pictures_[i];
-    const int red = picture.format == PixelFormat::kBgr ? 2 : 0;
+    const Channels channels(picture.format);
     const PixelBox whole{0, 0, picture.width, picture.height};
     const PixelBox seen = pair().is_doubled() ? scores_[i].box() : whole;
     const auto bin = [&](const Eigen::Vector3f& p_M) {
@@ -29,8 +29,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
       const int u = static_cast<int>(std::lround(g.cx + g.fx * p.x() / p.z()));
       const int v = static_cast<int>(std::lround(g.cy + g.fy * p.y() / p.z()));
       if (u < seen.x0 || v < seen.y0 || u >= seen.x1 || v >= seen.y1) return -1;
-      const std::uint8_t* rgb = picture.row(v) + 3 * std::ptrdiff_t{u};
-      return ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]);
+      return ColorModel::BinOf(picture.row(v) + std::ptrdiff_t{channels.step} * u, channels);
     };
     counts_.Clear();
     for (std::size_t k = 0; k < head().mesh.vertices.size(); ++k) {
@@ -51,8 +50,8 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
     const ImageView& around = pair().is_doubled() ? pair().source(i) : picture;
     for (int k = 0; k < 300; ++k) {
       const int v = random.Index(around.height), u = random.Index(around.width);
-      const std::uint8_t* rgb = around.row(v) + 3 * std::ptrdiff_t{u};
-      counts_.Add(kSurroundings, ColorModel::BinOf(rgb[red], rgb[1], rgb[2 - red]), 0.3f);
+      const std::uint8_t* pixel = around.row(v) + std::ptrdiff_t{channels.step} * u;
+      counts_.Add(kSurroundings, ColorModel::BinOf(pixel, channels), 0.3f);
     }
     colors_[i].Learn(&counts_);
   }

@@ -23,8 +23,6 @@ constexpr std::size_t kTurnedPlaces = 2;
 constexpr std::size_t kPromising = 6;  ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;   ///< best places that are verified
 constexpr int kVerifyRounds = 2, kMoreRounds = 2;
-constexpr double kClearNcc = 0.5;  ///< of the generic face
-constexpr double kPromisingInside = 0.4, kPromisingOutside = -0.15;
 constexpr int kMostFaces = 4;          ///< that are told apart by search.nearest_to
 constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
 constexpr int kFewestShots = 100, kFewestEvaluations = 20;  ///< where the clock lowers them
@@ -234,8 +232,7 @@ std::optional<RefinedEstimator::Candidate> RefinedEstimator::KnownAmongCandidate
   if (!texture_.learned()) return best;
   const auto consider = [&](const RigidTransform& X) {
     const Candidate known = RefineFrom(X, &texture_, settings_.refined.search_iterations, 7);
-    if (IsKnownFace(known, FindTextureNcc()) &&
-        (!best || known.refined.texture_ncc > best->refined.texture_ncc))
+    if (IsKnownAgain(known) && (!best || known.refined.texture_ncc > best->refined.texture_ncc))
       best = known;
   };
   for (const Candidate& candidate : candidates_) {
@@ -289,25 +286,6 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   if (!IsFace(found) || is_wide) found = TryEveryTurn(found);
   if (!IsFace(found)) found = Verify(found);
   return is_wide ? TryAskew(found) : found;
-}
-
-// It looks like the generic face so much that it is turned as that is.
-bool RefinedEstimator::IsClearFace(const Candidate& c) const {
-  return IsFace(c) && c.score.ncc > kClearNcc;
-}
-
-bool RefinedEstimator::IsHead(const Candidate& c) const {
-  const EvidenceConfig& e = settings_.refined.evidence;
-  return c.score.has_color && IsPlausible(c.refined.X_CM) && c.score.inside > e.lock_inside &&
-         c.score.outside < e.lock_outside;
-}
-
-// All but the colours speak for a face, and they do not speak against it: they need more learning.
-bool RefinedEstimator::IsPromising(const Candidate& c) const {
-  const EvidenceConfig& e = settings_.refined.evidence;
-  return c.score.has_color && IsPlausible(c.refined.X_CM) && BothEyes() &&
-         c.refined.stereo_ncc > e.lock_stereo_ncc && c.score.ncc > e.lock_ncc &&
-         c.score.inside > kPromisingInside && c.score.outside < kPromisingOutside;
 }
 
 // A face seen askew may have been fitted upside down into its own features: turned starts with the
@@ -379,7 +357,7 @@ RefinedEstimator::Candidate RefinedEstimator::Recognise(const Candidate& candida
   if (!texture_.learned()) return candidate;
   const Candidate known =
       RefineFrom(candidate.refined.X_CM, &texture_, settings_.refined.search_iterations, 7);
-  return IsKnownFace(known, FindTextureNcc()) ? known : candidate;
+  return IsKnownAgain(known) ? known : candidate;
 }
 
 }  // namespace visavis

@@ -19,8 +19,7 @@ class ScoreMap {
         height_(height),
         scores_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
 
-  /// Fills @p box from a kRgb or kBgr picture; a kGray one leaves all scores neutral. What was
-  /// filled before becomes unknown.
+  /// Fills @p box from a kRgb, kBgr or kGray picture. What was filled before becomes unknown.
   void Build(const ImageView& image, const ColorModel& model, const PixelBox& box);
 
   /// The nearest pixel's scores; unknown and neutral outside of the box.
@@ -42,18 +41,17 @@ class ScoreMap {
             static_cast<float>(box_.y1)};
   }
   const PixelBox& box() const { return box_; }
-  bool has_color() const { return has_color_; }
 
   static constexpr PackedScores kUnknown = 0x00808080u;
 
  private:
+  void FillFromGray(const ImageView& image, const ColorModel& model);
   std::size_t Index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x);
   }
 
   int width_, height_;
-  bool has_color_{false};
   PixelBox box_;
   std::vector<PackedScores> scores_;
 };

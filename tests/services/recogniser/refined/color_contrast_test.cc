@@ -44,13 +44,18 @@ TEST_F(ColorContrastTest, AHeadOfTheWallsColourHasNone) {
   EXPECT_LT(Aside(Vector6d::Zero()), 0.01);
 }
 
-TEST_F(ColorContrastTest, OutOfThePictureBehindTheCameraAndInGreyItIsZero) {
+TEST_F(ColorContrastTest, OutOfThePictureAndBehindTheCameraItIsZero) {
   scene_.Show(TransformFromPhi(kTruth), FlatHead);
   EXPECT_EQ(Aside(PhiOf(3000, 0, 0, 0, 0, 0)), 0);
   EXPECT_EQ(Aside(PhiOf(0, 0, -2000, 0, 0, 0)), 0);
-  ImageView gray = scene_.picture(0);
-  gray.format = PixelFormat::kGray;
-  EXPECT_EQ(contrast_.Of(gray, scene_.geometry(0), TransformFromPhi(kTruth)), 0);
+}
+
+TEST_F(ColorContrastTest, GreyLevelsContrastToo) {
+  scene_.ShowGray(TransformFromPhi(kTruth), FlatHead);
+  ASSERT_EQ(scene_.picture(0).format, PixelFormat::kGray);
+  const double there = Aside(Vector6d::Zero());
+  EXPECT_GT(there, 0.5);
+  EXPECT_LT(Aside(PhiOf(40, 0, 0, 0, 0, 0)), there - 0.2);
 }
 
 TEST_F(ColorContrastTest, NothingIsAllocated) {
