@@ -27,6 +27,7 @@ gain_drifts_30_% --scenario shuttle_x --period 7 --set sensor.drift=0.3
 blur_5_px --scenario shuttle_x --period 7 --set sensor.exposure_ms=45 --set sensor.blur_samples=5
 wall_like_skin --scenario shuttle_x --period 7 --set scene.skin_coloured_wall=true
 second_face --scenario shuttle_x --period 7 --set scene.second_head=adult_f
+grey_pictures --scenario shuttle_x --period 7 --set image_format=gray
 light_from_the_side --scenario shuttle_x --period 7 --set scene.light=side
 SCENARIOS
 }

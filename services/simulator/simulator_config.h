@@ -26,7 +26,7 @@ struct SimulatorConfig {
     a->Visit("publish_arm", &publish_arm);
     a->Visit("arm_channel", &arm_channel, ChannelName());
     a->Visit("publish_camera_pose", &publish_camera_pose);
-    a->Visit("image_format", &image_format, OneOf({"raw", "jpeg"}));
+    a->Visit("image_format", &image_format, OneOf({"raw", "gray", "jpeg"}));
     a->Visit("jpeg_quality", &jpeg_quality, InRange(1, 100));
     a->Visit("cameras", &cameras, OneOf({"publish", "gige"}));
     a->Visit("gige", &gige);

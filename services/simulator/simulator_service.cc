@@ -8,6 +8,7 @@
 #include "common/convert/image_message.h"
 #include "common/convert/pose_message.h"
 #include "common/convert/rig_message.h"
+#include "common/image/gray.h"
 #include "common/rigs/demo_rig.h"
 #include "common/rigs/rig_file.h"
 #include "services/simulator/mesh_export.h"
@@ -216,8 +217,12 @@ void SimulatorService::FillImage(const Pinhole& camera, const std::vector<std::u
                                  JpegEncoder* jpeg, image_t* image) {
   const ImageView picture{rgb.data(),       camera.width, camera.height,
                           3 * camera.width, rgb.size(),   PixelFormat::kRgb};
-  SetImage(config_.image_format == "jpeg" ? jpeg->Encode(picture, config_.jpeg_quality) : picture,
-           images_.utime, image);
+  if (config_.image_format == "jpeg") {
+    SetImage(jpeg->Encode(picture, config_.jpeg_quality), images_.utime, image);
+  } else {
+    SetImage(config_.image_format == "gray" ? ToGray(picture, &gray_) : picture, images_.utime,
+             image);
+  }
   AddMetadata("seq", frame_, image);
   AddMetadata("exposure_us", std::llround(1000 * config_.sensor.exposure_ms), image);
   AddMetadata("skew_us", 0, image);

@@ -73,6 +73,7 @@ class SimulatorService final : public Service {
   std::unique_ptr<GigeCameras> cameras_;    // none: pictures go on the bus
   std::shared_ptr<StereoPicture> picture_;  // in work
   JpegEncoder right_jpeg_, left_jpeg_;
+  std::vector<std::uint8_t> gray_;
 
   std::int64_t start_us_;
   std::int64_t frame_{0}, next_arm_{0}, next_rig_us_;

@@ -38,7 +38,7 @@ TEST(SimulatorConfigTest, RefusesBadValuesByKeyAndRule) {
   ExpectRefused("scene.light=above", "light", "front side");
   ExpectRefused("sensor.noise_sigma=-1", "noise_sigma", "0 to 40");
   ExpectRefused("sensor.blur_samples=0", "blur_samples", "1 to 64");
-  ExpectRefused("image_format=bmp", "image_format", "raw jpeg");
+  ExpectRefused("image_format=bmp", "image_format", "raw gray jpeg");
   ExpectRefused("rig_file=/nowhere/rig.yaml", "rig_file", "must be a file that exists");
   ExpectRefused("arm_rate_hz=20", "arm_rate_hz", "must not be below frame_rate_hz");
   ExpectRefused("cameras=usb", "cameras", "publish gige");

@@ -172,6 +172,20 @@ TEST_F(SimulatorServiceTest, JpegIsAMatterOfConfiguration) {
   EXPECT_EQ(decoder.Decode(FromMessage(images.images[0])).width, 160);
 }
 
+TEST_F(SimulatorServiceTest, GrayPicturesAreAsBrightAsColouredOnes) {
+  config_.seconds = 0.1;
+  const auto coloured = Decode<images_t>(Run().On(kStereoImagesChannel).front());
+  config_.image_format = "gray";
+  const auto gray = Decode<images_t>(Run().On(kStereoImagesChannel).front());
+  const ImageView rgb = FromMessage(coloured.images[1]), levels = FromMessage(gray.images[1]);
+  ASSERT_EQ(levels.format, PixelFormat::kGray);
+  ASSERT_EQ(levels.width, rgb.width);
+  for (int x = 0; x < rgb.width; ++x) {
+    const std::uint8_t* p = rgb.row(60) + 3 * x;
+    EXPECT_NEAR(levels.row(60)[x], 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2], 1) << x;
+  }
+}
+
 TEST_F(SimulatorServiceTest, WithoutArmTheRigDoesNotSpeakOfOne) {
   config_.publish_arm = false;
   const Recording recording = Run();
