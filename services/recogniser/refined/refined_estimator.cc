@@ -41,7 +41,7 @@ void RefinedEstimator::Reset() {
   for (ColorModel& colors : colors_) colors.Reset();
   centre_.reset();
   population_ = RealPopulation(settings_.refined.population, settings_.seed);
-  colors_started_ = {};
+  color_channels_ = {};
   X_CM_.reset();
   if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
   searched_range_ = FirstRange();
@@ -135,10 +135,10 @@ void RefinedEstimator::LookInto(std::size_t range) {
 void RefinedEstimator::TakePictures() {
   for (std::size_t i = 0; i < 2; ++i) {
     pictures_[i] = pair().Picture(*frame_, i);
-    if (colors_started_[i] || !pictures_[i]) continue;
+    if (!pictures_[i] || color_channels_[i] == BytesPerPixel(pictures_[i]->format)) continue;
     if (pair().is_doubled()) pair().Fill(i, pair().WholeBox(i));
     colors_[i].StartFrom(*pictures_[i]);
-    colors_started_[i] = true;
+    color_channels_[i] = BytesPerPixel(pictures_[i]->format);
   }
 }
 

@@ -148,7 +148,7 @@ class RefinedEstimator final : public Estimator {
   HeadAnchor anchor_;
   PoseCovariance covariance_;
   std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
-  std::array<bool, 2> colors_started_{};
+  std::array<int, 2> color_channels_{};  ///< of the pictures that colors_ are of; 0: not started
   ColorModel::Counts counts_;
   std::array<ScoreMap, 2> scores_;
   std::array<BandImages, 2> bands_;

@@ -99,6 +99,25 @@ TEST_F(RefinedEstimatorTest, AnEmptyRoomIsNeverTracked) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(See().status, TrackStatus::kSearching);
 }
 
+TEST_F(RefinedEstimatorTest, InGreyAHeadIsFoundAndFollowedAndAnEmptyRoomIsNot) {
+  scene_.ShowGray(TransformFromPhi(PhiOf(3000, 0, 1000, 0, 0, 0)), FeaturedHead);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(See().status, TrackStatus::kSearching);
+  for (int i = 0; i < 12; ++i) {
+    truth_ = TransformFromPhi(kPlace + i * PhiOf(3, -1, 3, 0.3, 0.4, -0.3));
+    scene_.ShowGray(truth_, FeaturedHead);
+    const Estimate& estimate = See();
+    if (i > 1) ExpectTracked(estimate, 5, 3);
+  }
+}
+
+TEST_F(RefinedEstimatorTest, CamerasThatTurnToGreyAndBackAreFollowed) {
+  for (int i = 0; i < 12; ++i) {
+    truth_ = TransformFromPhi(kPlace);
+    i / 4 % 2 == 0 ? scene_.Show(truth_, FeaturedHead) : scene_.ShowGray(truth_, FeaturedHead);
+    ExpectTracked(See(), 5, 3);
+  }
+}
+
 TEST_F(RefinedEstimatorTest, AHeadThatLeavesIsLostAtOnceAndTrackedWhenItComesBack) {
   for (int i = 0; i < 5; ++i) SeeHeadAt(kPlace);
   scene_.Show(TransformFromPhi(PhiOf(3000, 0, 1000, 0, 0, 0)), FeaturedHead);
