@@ -11,6 +11,7 @@ constexpr double kShape_m = 0.0006, kShape_rad = 0.009;     ///< where the face 
 constexpr double kNoiseShare = 0.006;                       ///< of the equations' inverse
 constexpr double kTurned_m = 0.0049, kTurned_rad = 0.0041;  ///< a radian from the mean view
 constexpr double kLearned_rad = 0.0071;
+constexpr double kFarTurned_rad = 0.07;  ///< a cubed radian from there: the looks hardly tell more
 constexpr double kHiddenDepth_m = 0.010, kHidden_m = 0.002, kHidden_rad = 0.03;  ///< of all
 constexpr double kSettling = 1;  ///< frames: the learned frame is as uncertain as kShape before
 
@@ -42,8 +43,9 @@ Matrix6d PoseCovariance::OfLearnedFace(const Matrix6d& information,
   if (count_ == 0) return OfAnyFace(information);
   Matrix6d covariance = kNoiseShare * information.inverse();
   const double turned_rad = std::acos(std::clamp(sum_.normalized().dot(direction), -1.0, 1.0));
-  AddIndependent(kTurned_m * turned_rad, std::hypot(kLearned_rad, kTurned_rad * turned_rad),
-                 &covariance);
+  const double far_rad = kFarTurned_rad * turned_rad * turned_rad * turned_rad;
+  AddIndependent(kTurned_m * turned_rad,
+                 std::hypot(kLearned_rad, kTurned_rad * turned_rad, far_rad), &covariance);
   const double unsettled = kSettling / (kSettling + count_);
   AddIndependent(unsettled * kShape_m, unsettled * kShape_rad, &covariance);
   return covariance;
