@@ -41,7 +41,7 @@ struct SearchSpaceConfig {
   double max_phi_deg{0}, max_theta_deg{0}, max_psi_deg{0};
   bool recentre{true};  ///< custom: move the position's range with the tracked head
   /// [m] x y z in C: of several faces in view the one nearest to it is taken at the start; empty:
-  /// the one that looks most like a face. Estimator refined.
+  /// one that clearly looks like a face, or else the one that does most. Estimator refined.
   std::vector<double> nearest_to;
 
   std::optional<Eigen::Vector3d> NearestTo() const;

@@ -15,8 +15,8 @@ class ColorContrast {
  public:
   explicit ColorContrast(const HeadMesh& mesh);
 
-  /// 0 (the same colours) to 1 (none in common), by the intersection of histograms; 0 for a grey
-  /// picture. No allocation. @param picture at @p eye's resolution
+  /// 0 (the same colours) to 1 (none in common), by the intersection of histograms. No
+  /// allocation. @param picture at @p eye's resolution
   double Of(const ImageView& picture, const EyeGeometry& eye, const RigidTransform& X_CM) const;
 
  private:

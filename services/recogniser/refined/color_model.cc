@@ -16,6 +16,8 @@ constexpr float kPriorShare = 0.1f;
 constexpr float kEnough = 20;  ///< counts that a class learns from
 
 /// Each bin shares with its neighbours along the three axes; the borders repeat.
+/// Of levels of grey most leaks aside, to colours that grey pixels never have: so they stay vague,
+/// which serves better than blurring along the levels alone.
 void Blur(float* bins, float centre) {
   std::array<float, ColorModel::kBins> old;
   const float side = 0.5f * (1 - centre);

@@ -42,6 +42,8 @@ void RefinedEstimator::Reset() {
   centre_.reset();
   population_ = RealPopulation(settings_.refined.population, settings_.seed);
   color_channels_ = {};
+  frames_ = 0;
+  good_in_a_row_ = bad_in_a_row_ = one_eye_in_a_row_ = 0;
   X_CM_.reset();
   if (settings_.start_X_CM) X_CM_ = *settings_.start_X_CM * X_MR_.inverse();
   searched_range_ = FirstRange();
@@ -50,8 +52,6 @@ void RefinedEstimator::Reset() {
   population_.Restart();
   estimate_ = Estimate{};
   rejected_.clear();
-  frames_ = 0;
-  good_in_a_row_ = bad_in_a_row_ = one_eye_in_a_row_ = 0;
 }
 
 void RefinedEstimator::ForgetFace() {
@@ -138,6 +138,7 @@ void RefinedEstimator::TakePictures() {
     if (!pictures_[i] || color_channels_[i] == BytesPerPixel(pictures_[i]->format)) continue;
     if (pair().is_doubled()) pair().Fill(i, pair().WholeBox(i));
     colors_[i].StartFrom(*pictures_[i]);
+    if (color_channels_[i] != 0) learner_.Forget();  // its views are of the other kind
     color_channels_[i] = BytesPerPixel(pictures_[i]->format);
   }
 }
@@ -240,18 +241,14 @@ void RefinedEstimator::FollowHead() {
     searched_range_ = (range_ + ranges_.size() - 1) % ranges_.size();  // its own comes next
     return;
   }
-  // Where a stranger was seen is looked at again.
-  const bool stays = strange_in_a_row_ > 0;
-  const bool is_centre_here = centre_ && ranges_.At(centre_->z(), range_) == range_;
-  if (centre_ && bad_in_a_row_ % 2 == 0 && (!stays || is_centre_here)) {
+  if (strange_in_a_row_ > 0) return;  // a stranger is looked at again
+  if (centre_ && bad_in_a_row_ % 2 == 0) {
     CentreOn(*centre_);
     return;
   }
   is_centred_ = false;
-  if (!stays) {
-    searched_range_ = (searched_range_ + 1) % ranges_.size();
-    WorkIn(searched_range_);
-  }
+  searched_range_ = (searched_range_ + 1) % ranges_.size();
+  WorkIn(searched_range_);
   population_.SetSpace(ranges_.space(range_));
 }
 
@@ -303,6 +300,7 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
     if (bad_in_a_row_ == kStrangerGone) RememberEnrolled();
     timer->Enter(Stage::kGeneration);
     population_.Renew(0.3);
+    colors_before_ = colors_;
     const std::optional<Candidate> there = WhereLost();
     candidate_ = there ? *there : SearchNearest();
     // One eye can keep a track for a while, not begin one: its depth is a guess.

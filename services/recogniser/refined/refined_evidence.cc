@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;  ///< a head may leave the space by
 constexpr double kBeyond = 0.08;                      ///< of its distance, likewise
-constexpr double kClearNcc = 0.5;                     ///< of the generic face
 constexpr double kPromisingInside = 0.4, kPromisingOutside = -0.15;
 
 }  // namespace
@@ -77,9 +76,9 @@ void RefinedEstimator::Judge(bool good) {
   }
 }
 
-// It looks like the generic face so much that it is turned as that is.
+// Its features speak for themselves: it is turned as the generic face is.
 bool RefinedEstimator::IsClearFace(const Candidate& c) const {
-  return IsFace(c) && c.score.ncc > kClearNcc;
+  return IsFace(c) && c.score.ncc > settings_.refined.evidence.alone_ncc;
 }
 
 bool RefinedEstimator::IsHead(const Candidate& c) const {

@@ -274,15 +274,15 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
     if (tried == kVerified || IsClearFace(*best)) break;
   }
   colors_ = colors_best_;
-  if (IsClearFace(*best)) return *best;
-  Candidate found = TryTurned(*best);
-  for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
-    found = Verify(found);
-  if (!IsHead(found) || effort_.searching < kLittleEffort) return found;
   // In a wide space a face may fit turned wrongly, and look well.
   const SearchSpace& space = population_.space();
   const bool is_wide =
       space.max.cwiseAbs().cwiseMax(space.min.cwiseAbs()).tail<3>().maxCoeff() > kWide_rad;
+  if (IsClearFace(*best) && !is_wide) return *best;
+  Candidate found = TryTurned(*best);
+  for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
+    found = Verify(found);
+  if (!IsHead(found) || effort_.searching < kLittleEffort) return found;
   if (!IsFace(found) || is_wide) found = TryEveryTurn(found);
   if (!IsFace(found)) found = Verify(found);
   return is_wide ? TryAskew(found) : found;

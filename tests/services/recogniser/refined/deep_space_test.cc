@@ -141,6 +141,31 @@ TEST_F(DeepSpaceTest, SomebodyElseIsTakenUpAsSoonAsInASpaceOfOnePart) {
   }
 }
 
+TEST_F(DeepSpaceTest, SomebodyElseAsideIsTakenUpToo) {
+  Begin(RecogniserConfig{}.RefinedSettings());
+  for (int i = 0; i < 25; ++i) SeeHeadAt(PhiOf(-100, 0, 1050, 4, -8, 5));
+  const Vector6d aside = PhiOf(185, 10, 1050, 4, -8, 5);  // out of what is round the last place
+  scene_.Show(TransformFromPhi(aside), StrangerHead);
+  EXPECT_LE(FramesToFind(60), 45);
+  ExpectAt(aside, See());
+}
+
+TEST_F(DeepSpaceTest, InGreyAHeadIsFollowedThroughThePartsToo) {
+  Begin(Between(0.5, 2.4));
+  const auto see = [&](double z_mm) -> const Estimate& {
+    scene_.ShowGray(TransformFromPhi(PlaceAt(z_mm)), FeaturedHead);
+    return See();
+  };
+  for (int i = 0; i < 6; ++i) see(900);
+  for (double z_mm = 900; z_mm < 1900; z_mm *= 1.03) {
+    const Estimate& estimate = see(z_mm);
+    EXPECT_EQ(estimate.status, TrackStatus::kTracking) << z_mm;
+    const auto error = ComputeRecognitionError(TransformFromPhi(PlaceAt(z_mm)), *estimate.X_CM);
+    EXPECT_LT(1e3 * error.position.norm(), 30) << z_mm;  // else it would be false
+    EXPECT_LT(error.total_angle * 180 / M_PI, 10) << z_mm;
+  }
+}
+
 TEST_F(DeepSpaceTest, AHeadThatJumpsIsFoundAgain) {
   struct Jump {
     double from_mm, to_mm;

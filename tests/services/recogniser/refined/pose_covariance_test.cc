@@ -49,6 +49,16 @@ TEST(PoseCovarianceTest, ALearnedFaceIsSurerTheLongerItIsLearned) {
   }
 }
 
+TEST(PoseCovarianceTest, FarFromTheLearnedViewsTheAnglesAreVague) {
+  PoseCovariance covariance;
+  for (int i = 0; i < 100; ++i) covariance.Learn(kStraight);
+  const auto sigma_rad = [&](double turned) {
+    return 1e-3 * SigmaMm(covariance.OfLearnedFace(Information(), Turned(turned)), 4);
+  };
+  EXPECT_LT(sigma_rad(0.3), 1.1 * sigma_rad(0));
+  EXPECT_GT(sigma_rad(0.9), 5 * sigma_rad(0));
+}
+
 TEST(PoseCovarianceTest, ItIsLessSureTheFartherTheViewHasTurnedFromTheMeanOfThoseLearned) {
   PoseCovariance covariance;
   for (int i = 0; i < 100; ++i) covariance.Learn(Turned(i % 2 == 0 ? 0.1 : 0.3));

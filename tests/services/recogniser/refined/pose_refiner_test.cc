@@ -109,12 +109,12 @@ TEST_F(PoseRefinerTest, WithoutPicturesThePoseStays) {
   EXPECT_EQ(refined.contour.count, 0);
 }
 
-TEST_F(PoseRefinerTest, GrayPicturesAreRefinedByThePatternAndBothEyes) {
+TEST_F(PoseRefinerTest, GreyPicturesAreRefinedAsColouredOnesAre) {
   scene_.ShowGray(X_CM_, GrainyHead);
   const FaceTexture texture = Learned();
   const Refined refined =
       refiner_.Refine(view_, TransformFromPhi(kTruth + PhiOf(2, -1, 3, 0, 0, 0)), &texture, 8, 9);
-  EXPECT_EQ(refined.contour.count, 0);
+  EXPECT_GT(refined.contour.count, 20);
   EXPECT_LT(ErrorOf(refined).position.head<2>().norm(), 0.0005);
 }
 

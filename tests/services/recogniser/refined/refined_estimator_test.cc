@@ -110,6 +110,18 @@ TEST_F(RefinedEstimatorTest, InGreyAHeadIsFoundAndFollowedAndAnEmptyRoomIsNot) {
   }
 }
 
+TEST_F(RefinedEstimatorTest, OneCameraMayBeGrey) {
+  truth_ = TransformFromPhi(kPlace);
+  MeshScene gray(TestRig());
+  gray.ShowGray(truth_, FeaturedHead);
+  scene_.Show(truth_, FeaturedHead);
+  StereoFrame frame;
+  frame.right = scene_.picture(0);
+  frame.left = gray.picture(1);
+  for (int i = 0; i < 3; ++i) estimator_.Process(frame, {}, &timer_);
+  ExpectTracked(estimator_.Process(frame, {}, &timer_), 5, 3);
+}
+
 TEST_F(RefinedEstimatorTest, CamerasMayChangeBetweenColourAndGrey) {
   for (int i = 0; i < 5; ++i) SeeHeadAt(kPlace);
   scene_.ShowGray(TransformFromPhi(PhiOf(3000, 0, 1000, 0, 0, 0)), FeaturedHead);
