@@ -75,7 +75,7 @@ void ColorModel::StartFrom(const ImageView& image) {
   const Channels channels(image.format);
   for (int y = 0; y < image.height; y += 2) {
     const std::uint8_t* p = image.row(y);
-    for (int x = 0; x < image.width; x += 2, p += 2 * channels.step)
+    for (int x = 0; x < image.width; x += 2, p += std::ptrdiff_t{2} * channels.step)
       bins[static_cast<std::size_t>(BinOf(p, channels))] += 1;
   }
   Blur(bins.data(), 0.6f);

@@ -239,16 +239,25 @@ void RefinedEstimator::FollowHead() {
   if (estimate_.status == TrackStatus::kTracking || bad_in_a_row_ == 0) {
     CentreOn(X_CM_->translation());
     searched_range_ = (range_ + ranges_.size() - 1) % ranges_.size();  // its own comes next
+    is_aside_ = false;
     return;
   }
-  if (strange_in_a_row_ > 0) return;  // a stranger is looked at again
-  if (centre_ && bad_in_a_row_ % 2 == 0) {
+  // Where a stranger was seen is looked at again, and by turns round the last place: it may be the
+  // learned face, seen wrongly.
+  const bool stays = strange_in_a_row_ > 0;
+  if (strange_in_a_row_ == 1 && !is_aside_) is_stranger_centred_ = is_centred_;
+  const bool is_centre_here = centre_ && ranges_.At(centre_->z(), range_) == range_;
+  const bool centres = centre_ && bad_in_a_row_ % 2 == 0 && (!stays || is_centre_here);
+  is_aside_ = stays && centres != is_stranger_centred_;
+  if (centres) {
     CentreOn(*centre_);
     return;
   }
   is_centred_ = false;
-  searched_range_ = (searched_range_ + 1) % ranges_.size();
-  WorkIn(searched_range_);
+  if (!stays) {
+    searched_range_ = (searched_range_ + 1) % ranges_.size();
+    WorkIn(searched_range_);
+  }
   population_.SetSpace(ranges_.space(range_));
 }
 

@@ -56,8 +56,10 @@ bool RefinedEstimator::HasLooks(const Candidate& c, double least_texture_ncc) co
 
 // A face, but not as learned: it is another one, or the texture was wrong. Then it is learned anew.
 bool RefinedEstimator::IsNewFace() {
-  strange_in_a_row_ = IsFace(candidate_) ? strange_in_a_row_ + 1 : 0;
-  if (strange_in_a_row_ == 0) return false;
+  const bool is_face = IsFace(candidate_);
+  if (is_face) ++strange_in_a_row_;
+  if (!is_face && !is_aside_) strange_in_a_row_ = 0;
+  if (!is_face) return false;
   if (texture_.learned() && strange_in_a_row_ < settings_.refined.evidence.strange_frames)
     return false;
   ForgetFace();

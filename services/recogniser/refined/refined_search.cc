@@ -278,7 +278,7 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
   const SearchSpace& space = population_.space();
   const bool is_wide =
       space.max.cwiseAbs().cwiseMax(space.min.cwiseAbs()).tail<3>().maxCoeff() > kWide_rad;
-  if (IsClearFace(*best) && !is_wide) return *best;
+  if (IsClearFace(*best)) return *best;
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);

@@ -9,7 +9,7 @@ namespace {
 
 TEST(GrayTest, IsTheBrightnessOfEachPixelWhateverTheStride) {
   constexpr int kWidth = 5, kHeight = 3, kStride = 3 * kWidth + 7;
-  std::vector<std::uint8_t> rgb(kStride * kHeight);
+  std::vector<std::uint8_t> rgb(std::size_t{kStride} * kHeight);
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(37 * i % 251);
   const ImageView picture{rgb.data(), kWidth, kHeight, kStride, rgb.size(), PixelFormat::kRgb};
   std::vector<std::uint8_t> pixels;
@@ -18,7 +18,7 @@ TEST(GrayTest, IsTheBrightnessOfEachPixelWhateverTheStride) {
   EXPECT_EQ(gray.stride, kWidth);
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      const std::uint8_t* p = picture.row(y) + 3 * x;
+      const std::uint8_t* p = picture.row(y) + std::ptrdiff_t{3} * x;
       EXPECT_NEAR(gray.row(y)[x], 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2], 0.6);
     }
   }
