@@ -25,10 +25,11 @@ void Blur(float* bins, float centre) {
     std::copy(bins, bins + ColorModel::kBins, old.begin());
     for (int block = 0; block < ColorModel::kBins; block += 16 * step) {
       for (int level = 0; level < 16; ++level) {
-        const float* here = old.data() + block + level * step;
+        const std::ptrdiff_t at = std::ptrdiff_t{level} * step + block;
+        const float* here = old.data() + at;
         const float* below = level > 0 ? here - step : here;
         const float* above = level < 15 ? here + step : here;
-        float* out = bins + block + level * step;
+        float* out = bins + at;
         for (int i = 0; i < step; ++i) out[i] = centre * here[i] + side * (below[i] + above[i]);
       }
     }

@@ -181,7 +181,7 @@ TEST_F(SimulatorServiceTest, GrayPicturesAreAsBrightAsColouredOnes) {
   ASSERT_EQ(levels.format, PixelFormat::kGray);
   ASSERT_EQ(levels.width, rgb.width);
   for (int x = 0; x < rgb.width; ++x) {
-    const std::uint8_t* p = rgb.row(60) + 3 * x;
+    const std::uint8_t* p = rgb.row(60) + std::ptrdiff_t{3} * x;
     EXPECT_NEAR(levels.row(60)[x], 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2], 1) << x;
   }
 }

@@ -157,7 +157,8 @@ TEST_F(DeepSpaceTest, InGreyAHeadIsFollowedThroughThePartsToo) {
     return See();
   };
   for (int i = 0; i < 6; ++i) see(900);
-  for (double z_mm = 900; z_mm < 1900; z_mm *= 1.03) {
+  double z_mm = 900;
+  while ((z_mm *= 1.03) < 1900) {
     const Estimate& estimate = see(z_mm);
     EXPECT_EQ(estimate.status, TrackStatus::kTracking) << z_mm;
     const auto error = ComputeRecognitionError(TransformFromPhi(PlaceAt(z_mm)), *estimate.X_CM);
