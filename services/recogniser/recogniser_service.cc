@@ -204,7 +204,10 @@ void RecogniserService::OnCommand(const recogniser_command_t& message) {
       message.feedforward.empty() ? feedforward_ : ParseFeedforward(message.feedforward);
   std::optional<SearchSpace> space;
   if (message.set_search_space) space = SearchSpaceFromMessage(message);
-  if (space && rig_) DistanceRanges(*rig_, *space);  // throws where the pictures are too small
+  const std::optional<SearchSpace>& next_space = space ? space : commanded_space_;
+  const std::string& next = message.estimator.empty() ? estimator_name_ : message.estimator;
+  if (next == "refined" && next_space && rig_)
+    DistanceRanges(*rig_, *next_space);  // throws where the pictures are too small
   if (space) commanded_space_ = space;
 
   ProcessWaiting();  // a pair that waits came before the command

@@ -62,6 +62,7 @@ void RefinedEstimator::ForgetFace() {
   covariance_.Forget();
   known_X_CM_.reset();
   strange_in_a_row_ = 0;
+  is_aside_ = false;
 }
 
 void RefinedEstimator::RememberEnrolled() {

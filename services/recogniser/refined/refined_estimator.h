@@ -146,7 +146,8 @@ class RefinedEstimator final : public Estimator {
   int learned_heads_{0};
   HeadAnchor anchor_;
   PoseCovariance covariance_;
-  std::array<ColorModel, 2> colors_, colors_before_, colors_best_;
+  std::array<ColorModel, 2> colors_, colors_best_;
+  std::array<ColorModel, 2> colors_before_;  ///< this frame's search
   /// A stranger was seen in the space that is centred; the search looked elsewhere since.
   bool is_stranger_centred_{false}, is_aside_{false};
   std::array<int, 2> color_channels_{};  ///< of the pictures that colors_ are of; 0: not started

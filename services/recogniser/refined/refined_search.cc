@@ -95,7 +95,6 @@ RefinedEstimator::Candidate RefinedEstimator::Search() {
     population_.Reproduce(child_fitness);
     ++estimate_.generations;
   }
-  colors_before_ = colors_;
   RefineStarts(DistinctPlaces());
   if (const auto known = KnownAmongCandidates()) return *known;
   return Recognise(BestVerified());
@@ -114,7 +113,6 @@ RefinedEstimator::Candidate RefinedEstimator::SearchNearest() {
   const auto distance = [&](const Candidate& candidate) {
     return (candidate.refined.X_CM * X_MR_.translation() - *settings_.nearest_to_m).norm();
   };
-  const auto colors_at_start = colors_;
   auto colors_nearest = colors_;
   const std::size_t first = range_;
   std::size_t nearest_range = first;
@@ -124,7 +122,7 @@ RefinedEstimator::Candidate RefinedEstimator::SearchNearest() {
     const std::size_t range = (first + i) % ranges_.size();
     for (int k = 0; k < kMostFaces; ++k) {
       if (i + static_cast<std::size_t>(k) > 0) {
-        colors_ = colors_at_start;
+        colors_ = colors_before_;
         LookInto(range);
         BuildMaps(nullptr);
         population_.Restart();
@@ -142,7 +140,6 @@ RefinedEstimator::Candidate RefinedEstimator::SearchNearest() {
     }
   }
   LookInto(nearest_range);
-  colors_before_ = colors_at_start;
   colors_ = colors_nearest;
   if (is_any_face) BuildMaps(&nearest->refined.X_CM);
   return *nearest;
@@ -274,15 +271,15 @@ RefinedEstimator::Candidate RefinedEstimator::BestVerified() {
     if (tried == kVerified || IsClearFace(*best)) break;
   }
   colors_ = colors_best_;
-  // In a wide space a face may fit turned wrongly, and look well.
-  const SearchSpace& space = population_.space();
-  const bool is_wide =
-      space.max.cwiseAbs().cwiseMax(space.min.cwiseAbs()).tail<3>().maxCoeff() > kWide_rad;
   if (IsClearFace(*best)) return *best;
   Candidate found = TryTurned(*best);
   for (int k = 0; k < kMoreRounds && !IsFace(found) && IsPromising(found); ++k)
     found = Verify(found);
   if (!IsHead(found) || effort_.searching < kLittleEffort) return found;
+  // In a wide space a face may fit turned wrongly, and look well.
+  const SearchSpace& space = population_.space();
+  const bool is_wide =
+      space.max.cwiseAbs().cwiseMax(space.min.cwiseAbs()).tail<3>().maxCoeff() > kWide_rad;
   if (!IsFace(found) || is_wide) found = TryEveryTurn(found);
   if (!IsFace(found)) found = Verify(found);
   return is_wide ? TryAskew(found) : found;
