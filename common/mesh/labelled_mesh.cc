@@ -4,6 +4,8 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cmath>
+#include <filesystem>
 #include <stdexcept>
 
 namespace visavis {
@@ -28,6 +30,12 @@ void ReadMaterial(const std::string& filename, const aiMaterial& material, Label
   material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
   part->diffuse = {static_cast<double>(colour.r), static_cast<double>(colour.g),
                    static_cast<double>(colour.b)};
+  aiString picture;
+  // A name that begins with an asterisk is of a picture within the file, which is not taken.
+  if (material.GetTexture(aiTextureType_DIFFUSE, 0, &picture) == aiReturn_SUCCESS &&
+      picture.length > 0 && picture.C_Str()[0] != '*') {
+    part->picture = std::filesystem::path(filename).parent_path() / picture.C_Str();
+  }
 }
 
 void ReadTriangles(const std::string& filename, const aiMesh& from, const MeshFileOptions& options,
@@ -43,6 +51,14 @@ void ReadTriangles(const std::string& filename, const aiMesh& from, const MeshFi
       Refuse(filename, "mesh '" + part->name + "': vertex " + std::to_string(k) +
                            ": must have finite coordinates within 10000 m; is the scale right?");
     }
+  }
+  for (unsigned k = 0; from.HasTextureCoords(0) && k < from.mNumVertices; ++k) {
+    const aiVector3D& t = from.mTextureCoords[0][k];
+    if (!std::isfinite(t.x) || !std::isfinite(t.y)) {
+      Refuse(filename, "mesh '" + part->name + "': vertex " + std::to_string(k) +
+                           ": must have finite texture coordinates");
+    }
+    part->uv.emplace_back(t.x, 1 - t.y);
   }
   for (unsigned k = 0; k < from.mNumFaces; ++k) {
     const aiFace& face = from.mFaces[k];

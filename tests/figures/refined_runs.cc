@@ -8,7 +8,8 @@
 // reference, then by the run itself; median and 99th percentile of the time of a frame [ms]; over
 // the same frames, aligned by the run itself, the mean of the normalised estimation error squared
 // (e' P^-1 e with the covariance P that was told: expected 6), of the position's part and of the
-// rotation's (expected 3 each).
+// rotation's (expected 3 each); that offset of the run itself, x y z [mm] and its turn about x, y,
+// z [deg].
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -144,10 +145,14 @@ void PrintRow(const std::string& log, const std::vector<Frame>& frames,
   const RigidTransform X_MT_self = OffsetOf(frames, kSettleS);
   const auto [self_mm, self_deg] = Rmse(frames, X_MT_self);
   const Eigen::Vector3d nees = Nees(frames, X_MT_self);
-  std::printf("%s %d %.1f %.2f %d %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f\n", log.c_str(),
+  std::printf("%s %d %.1f %.2f %d %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f", log.c_str(),
               with_head, 100.0 * tracking / std::max(with_head, 1),
               100.0 * wrong / static_cast<double>(frames.size()), first, mm, deg, self_mm, self_deg,
               ms[ms.size() / 2], ms[ms.size() * 99 / 100], nees[0], nees[1], nees[2]);
+  const Eigen::Vector3d p = 1e3 * X_MT_self.translation(),
+                        turn = kDeg * LogRotation(X_MT_self.linear());
+  std::printf(" %.1f %.1f %.1f %.1f %.1f %.1f\n", p.x(), p.y(), p.z(), turn.x(), turn.y(),
+              turn.z());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 
 #include "tests/support/temporary_folder.h"
 
@@ -79,6 +80,71 @@ TEST_F(MeshFileTest, ReadsGltf) {
   ASSERT_EQ(figure.head.size(), 1u);
   EXPECT_EQ(figure.head[0].texture.at(0, 0).label, Label::kHair);
   EXPECT_EQ(figure.head[0].mesh.triangles.size(), 1u);
+}
+
+TEST_F(MeshFileTest, ShowsTheMaterialsPicture) {
+  cv::Mat picture(2, 2, CV_8UC3, cv::Scalar(255, 255, 255));
+  picture.at<cv::Vec3b>(0, 1) = {0, 0, 255};  // red at the top right
+  cv::imwrite(folder_ / "skin.png", picture);
+  Write("head.mtl", "newmtl skin\nmap_Kd skin.png\n");
+  const Figure figure =
+      LoadFigure(Write("head.obj",
+                       "mtllib head.mtl\no head\nusemtl skin\nv 0 0 0\nv 0.2 0 0\nv 0.2 0.2 0\n"
+                       "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n"),
+                 {});
+  const Part& part = figure.head[0];
+  EXPECT_EQ(part.texture.at(1, 0).red, 255);
+  EXPECT_EQ(part.texture.at(1, 0).blue, 0);
+  EXPECT_EQ(part.texture.at(0, 0).blue, 255);
+  for (std::size_t i = 0; i < part.mesh.vertices.size(); ++i) {
+    // y up in the file, v down in the picture.
+    EXPECT_FLOAT_EQ(part.mesh.uv[i].x(), 5 * part.mesh.vertices[i].x());
+    EXPECT_FLOAT_EQ(part.mesh.uv[i].y(), 1 + 5 * part.mesh.vertices[i].y());
+  }
+}
+
+TEST_F(MeshFileTest, APictureRepeatsBeyondItsBorders) {
+  cv::imwrite(folder_ / "skin.png", cv::Mat(2, 2, CV_8UC3, cv::Scalar(9, 9, 9)));
+  Write("head.mtl", "newmtl skin\nmap_Kd skin.png\n");
+  const Figure figure =
+      LoadFigure(Write("head.obj",
+                       "mtllib head.mtl\no head\nusemtl skin\nv 0 0 0\nv 0.2 0 0\nv 0.2 0.2 0\n"
+                       "vt 2 -1\nvt 2.5 -1\nvt 2.5 -0.25\nf 1/1 2/2 3/3\n"),
+                 {});
+  const Mesh& mesh = figure.head[0].mesh;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    EXPECT_NEAR(mesh.uv[i].x(), 2.5f * mesh.vertices[i].x(), 1e-6f);
+    EXPECT_NEAR(mesh.uv[i].y(), 1 + 3.75f * mesh.vertices[i].y(), 1e-6f);
+  }
+}
+
+TEST_F(MeshFileTest, TheNeckFollowsTheHeadAtTheChinAndTheBodyBelow) {
+  Write("head.mtl", "newmtl skin\nnewmtl neck\n");
+  const Figure figure = LoadFigure(
+      Write("head.obj",
+            "mtllib head.mtl\nv 0 0.2 0\nv 0.1 0.2 0\nv 0 0.1 0\nv 0.1 0.1 0\nv 0 0.058 0\n"
+            "v 0 -0.1 0\no head\nusemtl skin\nf 1 2 3\no neck\nusemtl neck\nf 3 4 5\nf 4 5 6\n"),
+      {});
+  for (const Part& part : figure.head) {
+    if (part.texture.at(0, 0).label == Label::kSkin) {
+      EXPECT_TRUE(part.mesh.head_weight.empty());  // all of it follows the head
+      continue;
+    }
+    ASSERT_EQ(part.mesh.head_weight.size(), part.mesh.vertices.size());
+    for (std::size_t i = 0; i < part.mesh.vertices.size(); ++i) {
+      const float up = -part.mesh.vertices[i].y();
+      EXPECT_NEAR(part.mesh.head_weight[i], up > 0.09f ? 1 : up < 0 ? 0 : 0.5, 1e-5);
+    }
+  }
+}
+
+TEST_F(MeshFileTest, RefusesAPictureThatIsNotThere) {
+  Write("head.mtl", "newmtl skin\nmap_Kd gone.png\n");
+  const std::string file = Write("head.obj",
+                                 "mtllib head.mtl\nusemtl skin\nv 0 0 0\nv 0.2 0 0\n"
+                                 "v 0.2 0.2 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  EXPECT_THAT([&] { LoadFigure(file, {}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("gone.png: must be a picture")));
 }
 
 TEST_F(MeshFileTest, RefusesAMissingFileByName) {
