@@ -54,7 +54,7 @@ Paint PaintCloth(const Subject& subject, double arc_mm, const Vector3d& p, doubl
 
 }  // namespace
 
-Part BuildBodyPart(const Subject& subject, const HeadSurface& surface, int texture_size) {
+Part BuildBodyPart(const Subject& subject, const SkinSurface& surface, int texture_size) {
   const double neck = subject.shape.neck_breadth_mm / 2,
                shoulder = subject.clothes.shoulder_breadth_mm / 2;
   const double lift = subject.clothes.collar_mm;
@@ -98,7 +98,7 @@ Part BuildBodyPart(const Subject& subject, const HeadSurface& surface, int textu
 
 Figure BuildFigure(const Subject& subject, const FigureDetail& detail) {
   subject.ValidateOrThrow();
-  const HeadSurface surface(subject.shape);
+  const SkinSurface surface(subject.shape);
   Figure figure;
   figure.head.push_back(BuildHeadPart(subject, surface, detail, &figure));
   for (const bool image_right : {true, false}) {

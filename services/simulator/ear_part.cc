@@ -37,7 +37,7 @@ Vector3d Auricle(double angle, double radius) {
 
 }  // namespace
 
-Part BuildEarPart(const Subject& subject, const HeadSurface& surface, bool image_right) {
+Part BuildEarPart(const Subject& subject, const SkinSurface& surface, bool image_right) {
   const double side = image_right ? 1 : -1;
   const double half = subject.shape.ear_length_mm / 2;
   const double flare = subject.shape.ear_flare_deg * kPi / 180;

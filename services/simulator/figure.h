@@ -41,11 +41,11 @@ struct FigureDetail {
 Figure BuildFigure(const Subject& subject, const FigureDetail& detail = {});
 
 /// The pieces, in M [m].
-Part BuildHeadPart(const Subject& subject, const HeadSurface& surface, const FigureDetail& detail,
+Part BuildHeadPart(const Subject& subject, const SkinSurface& surface, const FigureDetail& detail,
                    Figure* landmarks);
-Part BuildEarPart(const Subject& subject, const HeadSurface& surface, bool image_right);
-Part BuildLongHairPart(const Subject& subject, const HeadSurface& surface, int texture_size);
-Part BuildBodyPart(const Subject& subject, const HeadSurface& surface, int texture_size);
+Part BuildEarPart(const Subject& subject, const SkinSurface& surface, bool image_right);
+Part BuildLongHairPart(const Subject& subject, const SkinSurface& surface, int texture_size);
+Part BuildBodyPart(const Subject& subject, const SkinSurface& surface, int texture_size);
 
 /// A flat hand with spread fingers, about 190 mm long, fingers to -y, palm to +z, centre of the
 /// palm at the origin.

@@ -102,7 +102,7 @@ double HairThickness(const Subject& subject, const Vector3d& p) {
   return thickness;
 }
 
-HeadGrid BuildHeadGrid(const Subject& subject, const HeadSurface& surface, int columns, int rows) {
+HeadGrid BuildHeadGrid(const Subject& subject, const SkinSurface& surface, int columns, int rows) {
   HeadGrid grid{columns, rows, {}, {}};
   for (int j = 0; j <= rows; ++j) {
     for (int i = 0; i < columns; ++i) {

@@ -28,7 +28,7 @@ struct HeadGrid {
   Eigen::Vector3d Interpolate(const std::vector<Eigen::Vector3d>& points, double u, double v) const;
 };
 
-HeadGrid BuildHeadGrid(const Subject& subject, const HeadSurface& surface, int columns, int rows);
+HeadGrid BuildHeadGrid(const Subject& subject, const SkinSurface& surface, int columns, int rows);
 
 /// How far [mm] a point of the skin (average coordinates) lies inside the hairy part of the head;
 /// < 0 outside. The irregular edge that the texture shows is included when @p ragged.

@@ -14,7 +14,7 @@ constexpr double kMetrePerMm = 1e-3;
 
 /// Mean place [m] of the texels labelled eye on one side of the face, weighted by the area that
 /// they show to the front.
-Vector3d EyeCentre(const Texture& texture, const HeadGrid& grid, const HeadSurface& surface,
+Vector3d EyeCentre(const Texture& texture, const HeadGrid& grid, const SkinSurface& surface,
                    double side) {
   Vector3d sum = Vector3d::Zero();
   double total = 0;
@@ -37,7 +37,7 @@ Vector3d EyeCentre(const Texture& texture, const HeadGrid& grid, const HeadSurfa
 
 }  // namespace
 
-Part BuildHeadPart(const Subject& subject, const HeadSurface& surface, const FigureDetail& detail,
+Part BuildHeadPart(const Subject& subject, const SkinSurface& surface, const FigureDetail& detail,
                    Figure* landmarks) {
   const HeadGrid grid = BuildHeadGrid(subject, surface, detail.head_columns, detail.head_rows);
   Mesh mesh = MakeGrid(grid.columns, grid.rows);

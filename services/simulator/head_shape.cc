@@ -44,7 +44,7 @@ double SmoothMin(double a, double b, double k) {
   return std::min(a, b) - h * h * k * 0.25;
 }
 
-void HeadShape::ValidateOrThrow() const {
+void HeadMeasures::ValidateOrThrow() const {
   VISAVIS_THROW_UNLESS(breadth_mm >= 120 && breadth_mm <= 180, breadth_mm);
   VISAVIS_THROW_UNLESS(length_mm >= 150 && length_mm <= 230, length_mm);
   VISAVIS_THROW_UNLESS(height_mm >= 180 && height_mm <= 270, height_mm);
@@ -62,7 +62,7 @@ void HeadShape::ValidateOrThrow() const {
   VISAVIS_THROW_UNLESS(ear_flare_deg >= 5 && ear_flare_deg <= 50, ear_flare_deg);
 }
 
-HeadSurface::HeadSurface(const HeadShape& shape)
+SkinSurface::SkinSurface(const HeadMeasures& shape)
     : shape_(shape),
       // Along y: depth before the axis, half width, z of the widest place, depth behind it.
       face_front_{{-60, 45},   {-30, 80}, {-8, 90},   {4, 93},   {19, 88},
@@ -88,13 +88,13 @@ HeadSurface::HeadSurface(const HeadShape& shape)
                      {250.0, kMenton * s + 115}});
 }
 
-Vector3d HeadSurface::cranium_semi_axes_mm() const {
+Vector3d SkinSurface::cranium_semi_axes_mm() const {
   return {kCraniumX * shape_.breadth_mm / kAverageBreadth,
           kCraniumY * shape_.height_mm / (kCraniumY + kMenton),
           kCraniumZ * shape_.length_mm / kAverageLength};
 }
 
-Vector3d HeadSurface::ToM(const Vector3d& p) const {
+Vector3d SkinSurface::ToM(const Vector3d& p) const {
   // Breadth of the cranium above, of the face and neck (already in average mm) below.
   const double cranial = shape_.breadth_mm / kAverageBreadth;
   const double facial = shape_.bizygomatic_mm / 137;
@@ -103,7 +103,7 @@ Vector3d HeadSurface::ToM(const Vector3d& p) const {
           p.z() * shape_.length_mm / kAverageLength};
 }
 
-double HeadSurface::Cranium(const Vector3d& p) const {
+double SkinSurface::Cranium(const Vector3d& p) const {
   // Widest above the ears, narrower at the forehead.
   const double half_width =
       kCraniumX * (1 - 0.17 * Square(std::clamp((18 - p.z()) / 112, 0.0, 1.0)));
@@ -117,7 +117,7 @@ double HeadSurface::Cranium(const Vector3d& p) const {
   return (g - 1) * kCraniumX;
 }
 
-double HeadSurface::Face(const Vector3d& p) const {
+double SkinSurface::Face(const Vector3d& p) const {
   if (p.y() < -60) return 40;  // well inside the cranium
   const double jaw =
       SmoothStep(55, 95, p.y()) * (shape_.bigonial_mm / 107 * 137 / shape_.bizygomatic_mm - 1);
@@ -130,7 +130,7 @@ double HeadSurface::Face(const Vector3d& p) const {
   return std::max(round, p.y() - kUnderChin);
 }
 
-double HeadSurface::Neck(const Vector3d& p) const {
+double SkinSurface::Neck(const Vector3d& p) const {
   const double half = shape_.neck_breadth_mm / 2 * 137 / shape_.bizygomatic_mm;
   // Leans forward; widens into the shoulders.
   const double flare = 1 + 0.35 * SmoothStep(165, 235, p.y());
@@ -144,7 +144,7 @@ double HeadSurface::Neck(const Vector3d& p) const {
   return std::max(d, 60 - p.y());
 }
 
-double HeadSurface::Nose(const Vector3d& p) const {
+double SkinSurface::Nose(const Vector3d& p) const {
   const double wing = shape_.nose_breadth_mm / 35 * 137 / shape_.bizygomatic_mm;
   const double tip = shape_.nose_protrusion_mm - 20, bridge = shape_.nose_bridge_mm;
   const double base = -95;  // face at subnasale
@@ -157,7 +157,7 @@ double HeadSurface::Nose(const Vector3d& p) const {
   return SmoothMin(d, Capsule(p, {0, 64, base - 13 - tip}, {0, 69, base - 1}, 4.2, 4.0), 5);
 }
 
-double HeadSurface::Relief(const Vector3d& p) const {
+double SkinSurface::Relief(const Vector3d& p) const {
   if (p.z() > 0) return 0;
   // Positive carves, negative builds up [mm].
   const double lips = shape_.lip_fullness, mouth = shape_.mouth_breadth_mm / 51;
@@ -180,7 +180,7 @@ double HeadSurface::Relief(const Vector3d& p) const {
   return d;
 }
 
-double HeadSurface::Distance(const Vector3d& p) const {
+double SkinSurface::Distance(const Vector3d& p) const {
   const double skull = SmoothMin(Cranium(p), Face(p), 22);
   double d = SmoothMin(skull, Neck(p), 14);
   if (p.z() < 0) {
@@ -194,7 +194,7 @@ double HeadSurface::Distance(const Vector3d& p) const {
   return d;
 }
 
-Vector3d HeadSurface::Outermost(const Vector3d& origin, const Vector3d& direction) const {
+Vector3d SkinSurface::Outermost(const Vector3d& origin, const Vector3d& direction) const {
   double outside = 185, inside = 0;
   while (outside > 1) {
     const double d = Distance(origin + outside * direction);

@@ -8,7 +8,7 @@ namespace visavis {
 
 /// How one person's head differs from the average adult's. Lengths in mm, as anthropometry gives
 /// them; the defaults are means of adults.
-struct HeadShape {
+struct HeadMeasures {
   double breadth_mm{152};      ///< widest breadth of the cranium
   double length_mm{195};       ///< glabella to the back of the head
   double height_mm{228};       ///< menton (under the chin) to vertex
@@ -43,9 +43,9 @@ struct HeadShape {
 /// (pupils at x = +-31, y = 22; mouth at y = 92; menton at y = 135), and M itself; ToM maps the
 /// first to the second. In M the cranium is the ellipsoid with the semi-axes that
 /// cranium_semi_axes_mm() gives, narrowed towards the forehead.
-class HeadSurface {
+class SkinSurface {
  public:
-  explicit HeadSurface(const HeadShape& shape);
+  explicit SkinSurface(const HeadMeasures& shape);
 
   /// Approximate signed distance [mm] of @p p (average coordinates) from the skin; < 0 inside.
   double Distance(const Eigen::Vector3d& p) const;
@@ -58,7 +58,7 @@ class HeadSurface {
   Eigen::Vector3d ToM(const Eigen::Vector3d& p) const;
 
   Eigen::Vector3d cranium_semi_axes_mm() const;
-  const HeadShape& shape() const { return shape_; }
+  const HeadMeasures& shape() const { return shape_; }
 
  private:
   double Cranium(const Eigen::Vector3d& p) const;
@@ -67,7 +67,7 @@ class HeadSurface {
   double Nose(const Eigen::Vector3d& p) const;
   double Relief(const Eigen::Vector3d& p) const;
 
-  HeadShape shape_;
+  HeadMeasures shape_;
   Profile face_front_, face_half_width_, face_centre_, face_back_;
   Profile y_to_M_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 
 namespace visavis {
 
@@ -18,6 +19,10 @@ struct Lighting {
 
   /// A lamp far to the side and little else: one half of the face dark.
   static Lighting Side();
+
+  /// A lamp anywhere before the face, from soft to hard, warm to cold; the same for the same
+  /// @p seed.
+  static Lighting Random(std::uint64_t seed);
 };
 
 }  // namespace visavis

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 }  // namespace
 
-Part BuildLongHairPart(const Subject& subject, const HeadSurface& surface, int texture_size) {
+Part BuildLongHairPart(const Subject& subject, const SkinSurface& surface, int texture_size) {
   // A curtain round the back of the head, open over the face, from above the ears to the
   // shoulders; its front edges are turned in towards the skin. Average coordinates [mm].
   static const Profile half_width{{-62, 56}, {-45, 71}, {-28, 81}, {-5, 87},

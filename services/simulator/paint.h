@@ -18,7 +18,7 @@ struct Paint {
 };
 
 /// Skin of face, head and neck with eyes, brows, lips and nostrils at @p p, average coordinates
-/// [mm] of HeadSurface.
+/// [mm] of SkinSurface.
 Paint PaintSkin(const Subject& subject, const Eigen::Vector3d& p);
 
 /// Lays brows, eyes, lips and nostrils over the skin's @p paint at @p p.

@@ -41,7 +41,7 @@ struct EyeFrame {
 };
 
 EyeFrame LocateInEye(const Subject& subject, const Vector3d& p) {
-  const HeadShape& s = subject.shape;
+  const HeadMeasures& s = subject.shape;
   constexpr double kHalfWidth = 15.2;
   EyeFrame eye;
   eye.x = std::abs(p.x()) - 31 * s.interpupillary_mm / 62 * 137 / s.bizygomatic_mm;

@@ -42,6 +42,11 @@ BackgroundConfig WallOf(const SceneConfig& scene) {
   return config;
 }
 
+Lighting LightOf(const SceneConfig& scene, std::uint64_t seed) {
+  if (scene.light == "side") return Lighting::Side();
+  return scene.light == "random" ? Lighting::Random(seed) : Lighting();
+}
+
 /// Where the body is when the head is at X_SM: upright, joined at the neck, turned a little along.
 RigidTransform BodyPose(const RigidTransform& X_SM, const Eigen::Vector3d& p_M_neck) {
   const Eigen::Matrix3d R_SB = ExpRotation(0.2 * LogRotation(X_SM.linear()));
@@ -80,7 +85,7 @@ SimulatedWorld::SimulatedWorld(const ScenarioConfig& scenario, const SceneConfig
       figure_(std::move(figure)),
       bystander_figure_(MakeBystander(scene)),
       background_(std::move(background)),
-      light_(scene.light == "side" ? Lighting::Side() : Lighting()),
+      light_(LightOf(scene, seed)),
       sensor_(sensor, seed),
       right_(rig.right, scene.edge_samples),
       left_(rig.left, scene.edge_samples) {

@@ -25,7 +25,7 @@ struct SceneConfig {
     a->Visit("mesh_scale", &mesh_scale, InRange(1e-6, 1e6, "m per unit"));
     a->Visit("mesh_y_up", &mesh_y_up);
     a->Visit("mesh_origin_m", &mesh_origin_m);
-    a->Visit("light", &light, OneOf({"front", "side"}));
+    a->Visit("light", &light, OneOf({"front", "side", "random"}));
     a->Visit("wall_z_mm", &wall_z_mm, InRange(1400.0, 10000.0, "mm"));
     a->Visit("skin_coloured_wall", &skin_coloured_wall);
     a->Visit("second_head", &second_head);
@@ -48,8 +48,9 @@ struct SceneConfig {
   double mesh_scale{1};            ///< metres per unit of the file
   bool mesh_y_up{true};            ///< glTF's axes; false: M's
   std::array<double, 3> mesh_origin_m{0, 0, 0};  ///< M's origin in the scaled file
-  std::string light{"front"};  ///< front: a soft lamp above; side: half the face in the dark
-  double wall_z_mm{2200};      ///< distance of the wall from the nominal camera
+  /// front: a soft lamp above; side: half the face in the dark; random: by the seed.
+  std::string light{"front"};
+  double wall_z_mm{2200};  ///< distance of the wall from the nominal camera
   bool skin_coloured_wall{false};
   std::string second_head;  ///< another subject at rest in view; empty: none
   std::array<double, 3> second_head_mm{420, -20, 1450};  ///< its place in the nominal camera

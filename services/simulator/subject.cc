@@ -1,9 +1,12 @@
 #include "services/simulator/subject.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 
 #include "common/core/check.h"
+#include "services/simulator/anybody.h"
 
 namespace visavis {
 namespace {
@@ -191,6 +194,9 @@ constexpr Entry kSubjects[] = {{"adult_a", AdultA}, {"adult_b", AdultB}, {"adult
                                {"adult_d", AdultD}, {"adult_e", AdultE}, {"adult_f", AdultF},
                                {"adult_g", AdultG}, {"adult_h", AdultH}};
 
+constexpr const char* kAnybody = "anybody_";
+constexpr std::size_t kMostDigits = 9;
+
 }  // namespace
 
 void Subject::ValidateOrThrow() const {
@@ -223,9 +229,15 @@ Subject NamedSubject(const std::string& name) {
       subject.name = name;
       return subject;
     }
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+    known += std::string(entry.name) + ", ";
   }
-  throw std::invalid_argument("subject = " + name + ": must be one of " + known);
+  const std::string digits = name.substr(std::min(name.size(), std::strlen(kAnybody)));
+  if (name.rfind(kAnybody, 0) == 0 && !digits.empty() && digits.size() <= kMostDigits &&
+      digits.find_first_not_of("0123456789") == std::string::npos) {
+    return Anybody(std::stoull(digits));
+  }
+  throw std::invalid_argument("subject = " + name + ": must be one of " + known +
+                              "or anybody_1, anybody_2, ...");
 }
 
 }  // namespace visavis

@@ -51,7 +51,7 @@ struct Clothes {
 /// Everything that makes one simulated person.
 struct Subject {
   std::string name;
-  HeadShape shape;
+  HeadMeasures shape;
   HairStyle hair;
   Complexion complexion;
   Clothes clothes;
@@ -64,6 +64,7 @@ struct Subject {
 /// The built-in people, adult_a to adult_h: different shapes, skins, hair.
 std::vector<std::string> SubjectNames();
 
+/// One of SubjectNames(), or anybody_1, anybody_2, ...: somebody at random (Anybody).
 /// @throws std::invalid_argument listing the names when there is none of that name.
 Subject NamedSubject(const std::string& name);
 

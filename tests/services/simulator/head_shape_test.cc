@@ -11,15 +11,15 @@ namespace {
 using Eigen::Vector3d;
 
 /// Outermost skin from the middle of the head, in M [mm].
-Vector3d SkinIn(const HeadSurface& surface, const Vector3d& origin, const Vector3d& direction) {
+Vector3d SkinIn(const SkinSurface& surface, const Vector3d& origin, const Vector3d& direction) {
   return surface.ToM(surface.Outermost(origin, direction.normalized()));
 }
 
 class HeadShapeTest : public ::testing::TestWithParam<const char*> {
  protected:
   const Subject subject_ = NamedSubject(GetParam());
-  const HeadShape& shape_ = subject_.shape;
-  const HeadSurface surface_{shape_};
+  const HeadMeasures& shape_ = subject_.shape;
+  const SkinSurface surface_{shape_};
 };
 INSTANTIATE_TEST_SUITE_P(Subjects, HeadShapeTest,
                          ::testing::Values("adult_a", "adult_b", "adult_c", "adult_d", "adult_e",
@@ -74,25 +74,25 @@ TEST_P(HeadShapeTest, GridLiesOnTheSkinAndHairOutsideIt) {
 }
 
 TEST(HeadSurfaceTest, ShapeParametersMoveWhatTheyName) {
-  HeadShape wide;
+  HeadMeasures wide;
   wide.bizygomatic_mm = 147;
-  const auto cheek = [](const HeadShape& shape) {
-    return SkinIn(HeadSurface(shape), {0, 42, -30}, {1, 0, 0}).x();
+  const auto cheek = [](const HeadMeasures& shape) {
+    return SkinIn(SkinSurface(shape), {0, 42, -30}, {1, 0, 0}).x();
   };
   EXPECT_NEAR(cheek(wide) - cheek({}), 5, 1.5);
-  HeadShape nose;
+  HeadMeasures nose;
   nose.nose_protrusion_mm = 25;
-  const auto tip = [](const HeadShape& shape) {
-    return SkinIn(HeadSurface(shape), {0, 57, -30}, {0, 0, -1}).z();
+  const auto tip = [](const HeadMeasures& shape) {
+    return SkinIn(SkinSurface(shape), {0, 57, -30}, {0, 0, -1}).z();
   };
   EXPECT_NEAR(tip({}) - tip(nose), 5, 1);
 }
 
 TEST(HeadSurfaceTest, RefusesAShapeBeyondAdultsByNameAndValue) {
-  HeadShape shape;
+  HeadMeasures shape;
   shape.breadth_mm = 90;
   try {
-    HeadSurface{shape};
+    SkinSurface{shape};
     FAIL();
   } catch (const std::invalid_argument& e) {
     EXPECT_NE(std::string(e.what()).find("breadth_mm = 90"), std::string::npos);
