@@ -51,9 +51,7 @@ HeadGeometry EllipsoidHead(const Vector3d& axes_mm, const HeadModelConfig& sizes
       static_cast<float>(1e-3 * (sizes.brow_y_mm - sizes.eye_y_mm - 0.5 * sizes.brow_arch_mm));
   // The published plane is told by its lean from the vertical normal, this one by its normal's.
   shape.hair_tilt_rad = static_cast<float>((90 - sizes.hair_tilt_deg) * M_PI / 180);
-  const HeadSurface plane(shape);
-  const auto at_origin =
-      static_cast<double>(plane.HairSide(head.p_MR_m.cast<float>()) + shape.hair_offset);
+  const auto at_origin = static_cast<double>(shape.hair_normal().dot(head.p_MR_m.cast<float>()));
   shape.hair_offset = static_cast<float>(1e-3 * sizes.hair_offset_mm + at_origin);
   HeadTable table;
   const Icosphere sphere(kLevel);

@@ -30,7 +30,7 @@ struct Scene {
 
   const Vector6d truth = PhiOf(20, -10, 1000, 4, -5, 3);
   std::array<Vector6d, 60> phis;
-  const AdultHead& head = SharedAdultHead();
+  const SharedHead& head = SharedAdultHead();
   HeadMesh mesh = MeshOf(head.surface, 3);
   MeshScene scene{TestRig()};
   MeshFitness fitness{mesh, head.face, kDetail};

@@ -32,7 +32,7 @@ struct Scene {
 
   const Vector6d truth = PhiOf(60, -40, 1080, 6, -8, 5);
   const SearchSpace space = SearchSpace::FromConfig({});
-  const AdultHead& head = SharedAdultHead();
+  const SharedHead& head = SharedAdultHead();
   MeshScene scene{TestRig()};
   const StereoView* view;
   MeshFitness fitness{MeshOf(head.surface, 3), head.face, 2};

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <set>
 
+#include "services/recogniser/refined/adult_head.h"
 #include "services/recogniser/refined/icosphere.h"
 
 namespace visavis {
@@ -11,9 +12,9 @@ namespace visavis {
 using Eigen::Vector3f;
 
 std::string AdultMaterial(const Vector3f& p) {
-  const HeadShape s;
+  const HeadShape& s = TheAdult().surface.shape();
   const float x = std::abs(p.x());
-  if (HeadSurface(s).HairSide(p) > 0) return "black_hair";
+  if (TheAdult().surface.HairSide(p) > 0) return "black_hair";
   if (p.z() > -0.03f) return "skin";
   if (std::hypot(x - s.eye_x, p.y() - s.eye_y) < 0.007f) return "eye_white";
   if (std::abs(x - 0.033f) < 0.018f && std::abs(p.y() - s.brow_y) < 0.004f) return "brow";

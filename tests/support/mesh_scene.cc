@@ -5,6 +5,9 @@
 #include <limits>
 #include <memory>
 
+#include "services/recogniser/refined/adult_head.h"
+#include "services/recogniser/refined/head_geometry.h"
+
 namespace visavis {
 namespace {
 
@@ -19,27 +22,25 @@ Color Shaded(const Color& color, float factor) {
   return shaded;
 }
 
-bool InEllipse(float dx, float dy, float a, float b) {
-  return dx * dx / (a * a) + dy * dy / (b * b) < 1;
-}
-
-bool IsDark(const Vector3f& p_M) {
-  const HeadShape& s = SharedAdultHead().surface.shape();
-  if (p_M.z() > -0.030f) return false;
-  const float x = std::abs(p_M.x()), y = p_M.y();
-  return InEllipse(x - s.eye_x, y - s.eye_y, 0.012f, 0.005f) ||
-         InEllipse(x - 0.033f, y - s.brow_y, 0.019f, 0.003f) ||
-         InEllipse(x - 0.007f, y - s.nostril_y, 0.004f, 0.003f) ||
-         InEllipse(x, y - s.mouth_y, 0.024f, 0.003f);
+/// Brightness of the face of an adult, about 0: what all have in common, and @p a of each mode.
+float Features(const Vector3f& p_M, const std::vector<float>& a) {
+  if (p_M.z() > -0.030f) return 0;
+  const AdultLooks::Place place = TheAdult().looks.At(p_M.x(), p_M.y());
+  if (!place.known) return 0;
+  float sum = place.mean[kFineBand] + 0.5f * place.mean[kCoarseBand];
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * place.modes[k];
+  return sum;
 }
 
 }  // namespace
 
-AdultHead::AdultHead()
-    : surface(HeadShape{}), mesh(MeshOf(surface, 4)), face(FacePointsOf(surface, 0.005)) {}
+SharedHead::SharedHead()
+    : surface(HeadShape{}, TableOf(TheAdult().surface, 4)),
+      mesh(MeshOf(surface, 4)),
+      face(FacePointsOf(surface, 0.005)) {}
 
-const AdultHead& SharedAdultHead() {
-  static const AdultHead head;
+const SharedHead& SharedAdultHead() {
+  static const SharedHead head;
   return head;
 }
 
@@ -50,7 +51,14 @@ Color FlatHead(const Vector3f& p_M) {
 Color FeaturedHead(const Vector3f& p_M) {
   const Color flat = FlatHead(p_M);
   if (flat == kSceneHair) return flat;
-  return Shaded(flat, IsDark(p_M) ? 0.45f : 1.0f + 0.02f * Grain(p_M));
+  return Shaded(flat, 0.95f + 0.5f * Features(p_M, {}) + 0.03f * Grain(p_M));
+}
+
+Color StrangerHead(const Vector3f& p_M) {
+  const Color flat = FlatHead(p_M);
+  if (flat == kSceneHair) return flat;
+  const float features = Features(p_M, {1.5f, -1.5f, 1.2f, -1.2f, 1, -1});
+  return Shaded(flat, 0.85f + 0.4f * features + 0.11f * Grain(p_M + Vector3f(0.05f, 0.02f, 0)));
 }
 
 Color GrainyHead(const Vector3f& p_M) {

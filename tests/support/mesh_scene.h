@@ -19,21 +19,25 @@ using Painter = std::function<Color(const Eigen::Vector3f& p_M)>;
 
 inline constexpr Color kSceneWall{96, 140, 176}, kSceneHair{52, 36, 28}, kSceneSkin{214, 160, 132};
 
-/// The refined estimator's generic head, made once: it takes a while.
-struct AdultHead {
-  AdultHead();
+/// The refined estimator's generic head as one that is known, made once: it takes a while.
+struct SharedHead {
+  SharedHead();
 
   HeadSurface surface;
   HeadMesh mesh;
   FacePoints face;
 };
-const AdultHead& SharedAdultHead();
+const SharedHead& SharedAdultHead();
 
 /// Hair and skin of flat colours.
 Color FlatHead(const Eigen::Vector3f& p_M);
-/// The same with dark brows, eyes, nostrils and mouth, and no two places of the skin alike.
+/// The same with the brows, eyes, nostrils and mouth of the mean adult, and no two places of the
+/// skin alike.
 Color FeaturedHead(const Eigen::Vector3f& p_M);
-/// The same with a fine grain all over the skin, so that each place is told from its neighbours.
+/// Somebody else: features as other adults have them, skin of another grain.
+Color StrangerHead(const Eigen::Vector3f& p_M);
+/// Hair and skin with a fine grain all over the skin, so that each place is told from its
+/// neighbours.
 Color GrainyHead(const Eigen::Vector3f& p_M);
 
 /// A smooth grain of about +-1, of waves of 12 to 21 mm in all directions.

@@ -75,17 +75,19 @@ std::vector<double> Difference(const Picture& fine, const Picture& coarse) {
 }  // namespace
 
 NaiveBands::NaiveBands(const ImageView& rgb) {
-  Picture full(rgb.width, rgb.height);
+  Picture full(rgb.width, rgb.height), red(rgb.width, rgb.height);
   for (int y = 0; y < rgb.height; ++y) {
     for (int x = 0; x < rgb.width; ++x) {
       const std::uint8_t* p = rgb.row(y) + 3 * x;
+      red.At(x, y) = p[0];
       full.At(x, y) = (77.0 * p[0] + 150.0 * p[1] + 29.0 * p[2]) / 256;
     }
   }
   const Picture half = Smooth(Halved(full), 1), quarter = Halved(half);
-  bands[0] = Difference(half, Smooth(quarter, 4));
+  bands[kFineBand] = Difference(half, Smooth(quarter, 4));
   const Picture smooth_quarter = Smooth(quarter, 1);
-  bands[1] = Difference(smooth_quarter, Smooth(Halved(smooth_quarter), 4));
+  bands[kCoarseBand] = Difference(smooth_quarter, Smooth(Halved(smooth_quarter), 4));
+  bands[kBrightness] = Smooth(Halved(red), 1).data;
 }
 
 bool SampleBand(const BandView& band, double u, double v, BandSample* sample) {

@@ -5,6 +5,7 @@
 
 #include "common/image/image.h"
 #include "services/recogniser/refined/face_kernel.h"
+#include "services/recogniser/refined/face_points.h"
 
 namespace visavis {
 
@@ -20,12 +21,12 @@ bool SampleBand(const BandView& band, double u, double v, BandSample* sample);
 /// The value alone, at the nearest sample; false outside.
 bool NearestSample(const BandView& band, double u, double v, float* value);
 
-/// Both bands of a whole RGB picture, row by row [levels], in double precision; width and height
-/// multiples of 8.
+/// Both bands and the brightness of a whole RGB picture, row by row [levels], in double precision;
+/// width and height multiples of 8.
 struct NaiveBands {
   explicit NaiveBands(const ImageView& rgb);
 
-  std::array<std::vector<double>, 2> bands;  ///< fine, coarse
+  std::array<std::vector<double>, kNumPlanes> bands;
 };
 
 }  // namespace visavis

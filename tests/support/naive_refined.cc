@@ -169,27 +169,90 @@ NaiveRefiner::Samples NaiveRefiner::SampleFace(const EyeView& eye,
   return samples;
 }
 
-void NaiveRefiner::AddPattern(const Samples& samples, const RigidTransform& X_CM,
-                              PoseEquations* equations) const {
-  const auto pattern = [&](std::size_t i) {
-    return static_cast<double>(face_.generic[kFineBand][i]);
+// What the looks a add to the sum of squares is minimised over a, and the pose's equations are what
+// remains: rows of 6 + 12 unknowns, the last 12 eliminated.
+void NaiveRefiner::AddLooks(const std::array<Samples, 2>& samples, const RigidTransform& X_CM,
+                            PoseEquations* equations) const {
+  constexpr int kModes = kLooksModes;
+  constexpr double kIndependence = 0.12;
+  using Looks = Eigen::Matrix<double, kModes, 1>;
+  const auto modes = [&](std::size_t i) {
+    Looks m;
+    for (int k = 0; k < kModes; ++k)
+      m[k] = static_cast<double>(face_.modes[i][static_cast<std::size_t>(k)]);
+    return m;
   };
-  Sums m;
-  for (std::size_t i = 0; i < face_.size(); ++i) {
-    if (samples.seen[i] && face_.has_generic[i]) m.Add(pattern(i), samples.value[i]);
+  const auto mean = [&](std::size_t i) { return static_cast<double>(face_.generic[kFineBand][i]); };
+  const auto weight = [&](std::size_t i) {
+    return 1 / (std::pow(static_cast<double>(face_.doubt[i]), 2) + 0.04);
+  };
+  struct Light {
+    double count, gain, offset;
+  };
+  const auto light = [&](const Samples& eye, const Looks& a) {
+    double n = 0, w = 0, x = 0, y = 0;
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      if (!eye.seen[i] || !face_.has_generic[i]) continue;
+      n += 1;
+      w += weight(i);
+      x += weight(i) * (mean(i) + modes(i).dot(a));
+      y += weight(i) * eye.value[i];
+    }
+    x /= w;
+    y /= w;
+    double var_x = 0, var_y = 0, cov = 0;
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      if (!eye.seen[i] || !face_.has_generic[i]) continue;
+      const double dx = mean(i) + modes(i).dot(a) - x, dy = eye.value[i] - y;
+      var_x += weight(i) * dx * dx;
+      var_y += weight(i) * dy * dy;
+      cov += weight(i) * dx * dy;
+    }
+    const double gain = std::max(cov / var_x, 0.4 * std::sqrt((var_y + 0.0025 * w) / var_x));
+    return Light{n, gain, y - gain * x};
+  };
+  Looks a = Looks::Zero();
+  for (int round = 0; round < 2; ++round) {
+    Eigen::Matrix<double, kModes, kModes> H = Eigen::Matrix<double, kModes, kModes>::Identity();
+    Looks g = Looks::Zero();
+    for (const Samples& eye : samples) {
+      const Light l = light(eye, a);
+      if (l.count < 40) continue;
+      for (std::size_t i = 0; i < face_.size(); ++i) {
+        if (!eye.seen[i] || !face_.has_generic[i]) continue;
+        const Looks m = modes(i);
+        H += kIndependence * weight(i) * m * m.transpose();
+        g += kIndependence * weight(i) * ((eye.value[i] - l.offset) / l.gain - mean(i)) * m;
+      }
+    }
+    a = H.fullPivLu().solve(g);
   }
-  if (m.n < 40) return;
-  const double rms = std::sqrt(m.var_x() / m.n), fitted = m.cov() / m.var_x();
-  const double offset = (m.y - fitted * m.x) / m.n;
-  const double gain = fitted * rms < 0.3 ? 0.5 / rms : fitted;
-  const double sigma = gain * rms + 0.5;
-  for (std::size_t i = 0; i < face_.size(); ++i) {
-    if (!samples.seen[i] || !face_.has_generic[i]) continue;
-    const double residual = gain * pattern(i) + offset - samples.value[i];
-    const double robust = 1 + residual * residual / (4 * sigma * sigma);
-    AddTo(equations, samples.slope[i], X_CM.linear() * face_.points[i].cast<double>(), residual,
-          config_.pattern_weight / (sigma * sigma * robust));
+  using All = Eigen::Matrix<double, 6 + kModes, 1>;
+  Eigen::Matrix<double, 6 + kModes, 6 + kModes> H = All::Zero().asDiagonal();
+  H.bottomRightCorner<kModes, kModes>().setIdentity();
+  All g = All::Zero();
+  g.tail<kModes>() = -a;
+  for (const Samples& eye : samples) {
+    const Light l = light(eye, a);
+    if (l.count < 40) continue;
+    for (std::size_t i = 0; i < face_.size(); ++i) {
+      if (!eye.seen[i] || !face_.has_generic[i]) continue;
+      const double residual = l.gain * (mean(i) + modes(i).dot(a)) + l.offset - eye.value[i];
+      const double variance = l.gain * l.gain / weight(i) + 0.25;
+      All row;
+      row << eye.slope[i], (X_CM.linear() * face_.points[i].cast<double>()).cross(eye.slope[i]),
+          -l.gain * modes(i);
+      const double w =
+          config_.pattern_weight * kIndependence / (variance + 0.25 * residual * residual);
+      H += w * row * row.transpose();
+      g += w * residual * row;
+    }
   }
+  const auto eliminated = H.bottomRightCorner<kModes, kModes>().fullPivLu();
+  const Eigen::Matrix<double, 6, kModes> H_pa = H.topRightCorner<6, kModes>();
+  const Matrix6d H_pose = H.topLeftCorner<6, 6>() - H_pa * eliminated.solve(H_pa.transpose());
+  equations->H += H_pose;
+  equations->g += g.head<6>() - H_pa * eliminated.solve(g.tail<kModes>());
 }
 
 void NaiveRefiner::AddStereo(const Samples& right, const Samples& left, const RigidTransform& X_CM,
@@ -290,8 +353,7 @@ PoseEquations NaiveRefiner::Generic(const StereoView& view, const RigidTransform
   PoseEquations equations;
   for (const EyeView& eye : view) AddContours(eye, X_CM, 6, &equations);
   const Samples right = SampleFace(view[0], X_CM), left = SampleFace(view[1], X_CM);
-  AddPattern(right, X_CM, &equations);
-  AddPattern(left, X_CM, &equations);
+  AddLooks({right, left}, X_CM, &equations);
   AddStereo(right, left, X_CM, &equations);
   Matrix6d R = Matrix6d::Zero();
   R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();

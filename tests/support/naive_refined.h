@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "services/recogniser/refined/mesh_fitness.h"
@@ -45,8 +46,9 @@ class NaiveRefiner {
                    PoseEquations* equations) const;
   struct Samples;
   Samples SampleFace(const EyeView& eye, const RigidTransform& X_CM) const;
-  void AddPattern(const Samples& samples, const RigidTransform& X_CM,
-                  PoseEquations* equations) const;
+  /// All adults' looks, fitted to both eyes and eliminated.
+  void AddLooks(const std::array<Samples, 2>& samples, const RigidTransform& X_CM,
+                PoseEquations* equations) const;
   void AddStereo(const Samples& right, const Samples& left, const RigidTransform& X_CM,
                  PoseEquations* equations) const;
 

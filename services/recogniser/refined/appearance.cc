@@ -73,29 +73,37 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
   return fit;
 }
 
-double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
-                 const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
-                 PoseEquations* equations) {
+double StereoCorrelation(const FaceSamples& right, const FaceSamples& left, std::size_t size) {
   const PairSums all =
-      SumPairs(Series(left.value, left.seen, left.facing, right, kAnyFacing, face.size()));
+      SumPairs(Series(left.value, left.seen, left.facing, right, kAnyFacing, size));
   if (all.n < kFewest) return 0;
-  const double correlation =
-      all.cov() / std::sqrt(std::max(all.var_x() * all.var_y(), 0.0) + 1e-12);
-  const PairedSeries both =
-      Series(left.value, left.seen, left.facing, right, kStereoFacing, face.size());
-  const PairSums m = SumPairs(both);
-  if (m.n < kFewest) return correlation;
-  // left * ratio + offset as the right eye sees it; the ratio from the contrasts, which noise
-  // raises alike on both sides.
+  return all.cov() / std::sqrt(std::max(all.var_x() * all.var_y(), 0.0) + 1e-12);
+}
+
+GainOffset FitEyes(const FaceSamples& right, const FaceSamples& left, std::size_t size) {
+  const PairSums m =
+      SumPairs(Series(left.value, left.seen, left.facing, right, kStereoFacing, size));
+  GainOffset fit;
+  fit.count = static_cast<int>(m.n);
+  if (fit.count < kFewest) return fit;
   const double var_x = std::max(m.var_x(), 0.0), var_y = std::max(m.var_y(), 0.0);
-  const double ratio = std::sqrt((var_y + 1e-9) / (var_x + 1e-9));
-  const float sigma = relative_sigma * static_cast<float>(std::sqrt(var_y / m.n)) + kNoise;
-  AddPairs(both,
-           {static_cast<float>(ratio), static_cast<float>((m.y - ratio * m.x) / m.n),
-            weight / (sigma * sigma), 1 / (4 * sigma * sigma), left.slope.data()->data(),
-            right.slope.data()->data(), face.points.data()->data(), &R_CM},
+  fit.gain = std::sqrt((var_y + 1e-9) / (var_x + 1e-9));
+  fit.offset = (m.y - fit.gain * m.x) / m.n;
+  fit.pattern_rms = std::sqrt(var_y / m.n);
+  return fit;
+}
+
+void AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
+               const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
+               PoseEquations* equations) {
+  const GainOffset fit = FitEyes(right, left, face.size());
+  if (fit.count < kFewest) return;
+  const float sigma = relative_sigma * static_cast<float>(fit.pattern_rms) + kNoise;
+  AddPairs(Series(left.value, left.seen, left.facing, right, kStereoFacing, face.size()),
+           {static_cast<float>(fit.gain), static_cast<float>(fit.offset), weight / (sigma * sigma),
+            1 / (4 * sigma * sigma), left.slope.data()->data(), right.slope.data()->data(),
+            face.points.data()->data(), &R_CM},
            equations);
-  return correlation;
 }
 
 }  // namespace visavis

@@ -49,12 +49,18 @@ GainOffset AddPattern(const FacePoints& face, const FaceSamples& samples,
                       const std::vector<unsigned char>& usable, float relative_sigma, float weight,
                       PoseEquations* equations);
 
-/// Both eyes should see the same brightness at a point of the surface, up to gain and offset;
+/// How far both eyes see the same, -1 to 1, up to gain and offset; 0 where they see too little.
+double StereoCorrelation(const FaceSamples& right, const FaceSamples& left, std::size_t size);
+
+/// right = gain * left + offset over the points that both eyes see well; the gain from the
+/// contrasts, which noise raises alike on both sides. pattern_rms is the right eye's contrast.
+GainOffset FitEyes(const FaceSamples& right, const FaceSamples& left, std::size_t size);
+
+/// Both eyes should see the same at a point of the surface, up to gain and offset;
 /// @p relative_sigma: expected difference, in units of the face's own contrast. Points turned far
-/// aside do not pull: the bands blur what is behind the head into them. @return the correlation of
-/// all points that both see, before the step, -1 to 1; 0 where they are too few.
-double AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
-                 const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
-                 PoseEquations* equations);
+/// aside do not pull: what is behind the head blurs into them.
+void AddStereo(const FacePoints& face, const FaceSamples& right, const FaceSamples& left,
+               const Eigen::Matrix3f& R_CM, float relative_sigma, float weight,
+               PoseEquations* equations);
 
 }  // namespace visavis

@@ -13,10 +13,12 @@ BandImages::BandImages(int width, int height) {
     return static_cast<std::size_t>(width / divisor + 1) *
            static_cast<std::size_t>(height / divisor + 1);
   };
-  for (Plane* plane : {&half_, &smooth_half_, &scratch_}) plane->data.resize(cells(2));
+  for (Plane* plane : {&half_, &smooth_half_, &red_, &smooth_red_, &scratch_})
+    plane->data.resize(cells(2));
   for (Plane* plane : {&quarter_, &smooth_quarter_, &wide_, &wider_}) plane->data.resize(cells(4));
   eighth_.data.resize(cells(8));
   bands_[kFineBand].data.resize(cells(2));
+  bands_[kBrightness].data.resize(cells(2));
   bands_[kCoarseBand].data.resize(cells(4));
   row_.resize(static_cast<std::size_t>(width + 1));
   blended_.resize(static_cast<std::size_t>(width / 4 + 3));
@@ -44,6 +46,27 @@ void BandImages::HalfBrightness(const ImageView& image, const PixelBox& box) {
       out[x] = static_cast<std::uint16_t>((means[2 * x] + means[2 * x + 1] + 4) >> 3);
     }
   }
+}
+
+// Skin scatters red most: in it highlights, which each eye sees elsewhere, count least.
+void BandImages::BuildRed(const ImageView& image, const PixelBox& box) {
+  if (image.format == PixelFormat::kGray) {
+    PairUp(smooth_half_, &bands_[kBrightness]);
+    return;
+  }
+  red_.width = half_.width;
+  red_.height = half_.height;
+  const std::ptrdiff_t from = std::ptrdiff_t{box.x0} * 3 + Channels(image.format).red;
+  for (int y = 0; y < red_.height; ++y) {
+    const std::uint8_t* top = image.row(box.y0 + 2 * y) + from;
+    const std::uint8_t* bottom = image.row(box.y0 + 2 * y + 1) + from;
+    std::uint16_t* out = red_.row(y);
+    for (int x = 0; x < red_.width; ++x, top += 6, bottom += 6)
+      out[x] =
+          static_cast<std::uint16_t>((top[0] + top[3] + bottom[0] + bottom[3]) * (kBandSteps / 4));
+  }
+  Smooth3(red_, &smooth_red_);
+  PairUp(smooth_red_, &bands_[kBrightness]);
 }
 
 void BandImages::Halve(const Plane& from, Plane* to) {
@@ -89,6 +112,18 @@ void BandImages::Smooth5(const Plane& from, Plane* to) {
   Smooth3(*to, to);
 }
 
+void BandImages::PairUp(const Plane& from, PairPlane* to) {
+  to->width = from.width;
+  to->height = from.height;
+  for (int y = 0; y < from.height; ++y) {
+    const std::uint16_t* in = from.row(y);
+    std::int32_t* out = to->row(y);
+    for (int x = 0; x + 1 < from.width; ++x)
+      out[x] = static_cast<std::int32_t>(std::uint32_t{in[x + 1]} << 16 | in[x]);
+    out[from.width - 1] = static_cast<std::int32_t>(std::uint32_t{in[from.width - 1]} * 0x10001u);
+  }
+}
+
 // @p from minus @p coarse at twice its resolution (bilinear).
 void BandImages::SubtractDoubled(const Plane& from, const Plane& coarse, PairPlane* to) {
   to->width = from.width;
@@ -126,6 +161,7 @@ void BandImages::Build(const ImageView& image, const PixelBox& box) {
   box_ = box;
   HalfBrightness(image, box);
   Smooth3(half_, &smooth_half_);
+  BuildRed(image, box);
   Halve(smooth_half_, &quarter_);
   Smooth5(quarter_, &wide_);
   Smooth5(wide_, &wider_);
@@ -144,7 +180,7 @@ BandView BandImages::view(Band band) const {
           plane.height,
           static_cast<float>(box_.x0),
           static_cast<float>(box_.y0),
-          band == kFineBand ? 0.5f : 0.25f};
+          band == kCoarseBand ? 0.25f : 0.5f};
 }
 
 }  // namespace visavis

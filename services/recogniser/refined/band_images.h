@@ -42,14 +42,17 @@ class BandImages {
     std::int32_t* row(int y) { return data.data() + std::ptrdiff_t{y} * width; }
   };
   void HalfBrightness(const ImageView& image, const PixelBox& box);
+  void BuildRed(const ImageView& image, const PixelBox& box);
   static void Halve(const Plane& from, Plane* to);
   void Smooth3(const Plane& from, Plane* to);
   void Smooth5(const Plane& from, Plane* to);
+  static void PairUp(const Plane& from, PairPlane* to);
   void SubtractDoubled(const Plane& from, const Plane& coarse, PairPlane* to);
 
   PixelBox box_;
-  Plane half_, quarter_, eighth_, smooth_half_, smooth_quarter_, wide_, wider_, scratch_;
-  std::array<PairPlane, kNumBands> bands_;
+  Plane half_, red_, smooth_red_, quarter_, eighth_, smooth_half_, smooth_quarter_, wide_, wider_,
+      scratch_;
+  std::array<PairPlane, kNumPlanes> bands_;
   std::vector<std::uint16_t> row_, blended_;
 };
 

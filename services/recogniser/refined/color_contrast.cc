@@ -17,8 +17,8 @@ constexpr double kSkinShare = 0.6;
 constexpr int kFewest = 10;  ///< points of a kind that tell anything
 
 struct Histogram {
-  std::array<int, kBins> bins{};
-  int total{0};
+  std::array<std::int32_t, kBins> bins{};
+  std::int32_t total{0};
 
   void Add(int bin) {
     ++bins[static_cast<std::size_t>(bin)];
@@ -27,10 +27,9 @@ struct Histogram {
   /// 1 less what both have in common.
   double Differs(const Histogram& other) const {
     if (total < kFewest || other.total < kFewest) return 0;
-    std::int64_t common = 0;  // times both totals
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-      common += std::min(std::int64_t{bins[i]} * other.total, std::int64_t{other.bins[i]} * total);
-    }
+    std::int32_t common = 0;  // times both totals, which are some hundreds
+    for (std::size_t i = 0; i < bins.size(); ++i)
+      common += std::min(bins[i] * other.total, other.bins[i] * total);
     return 1 - static_cast<double>(common) /
                    (static_cast<double>(total) * static_cast<double>(other.total));
   }
@@ -41,7 +40,7 @@ struct Histogram {
 ColorContrast::ColorContrast(const HeadMesh& mesh) {
   int num_inside = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    const Point point{mesh.vertices[i], mesh.normals[i]};
+    const Point point{mesh.vertices[i], mesh.normals[i], mesh.vertices[i].dot(mesh.normals[i])};
     if (mesh.coloured[i] && num_inside++ % kInsideStep == 0)
       (mesh.parts[i] == HeadPart::kHair ? hair_ : skin_).push_back(point);
     if (mesh.contour_weights[i] > 0) outline_.push_back(point);
@@ -66,18 +65,19 @@ double ColorContrast::Of(const ImageView& picture, const EyeGeometry& eye,
     const auto level = [&](int channel) { return pixel[channel] >> kShift; };
     histogram->Add(level(channels.red) << 6 | level(channels.green) << 3 | level(channels.blue));
   };
-  const auto facing = [&](const Point& point) {
-    const Vector3f ray = point.p - pose.p_ME;
-    return -point.normal.dot(ray) / ray.norm();
+  // All points are about as far from the eye as the head is.
+  const float facing = kFacing * pose.p_ME.norm(), grazing = kGrazing * pose.p_ME.norm();
+  const auto towards = [&](const Point& point) {
+    return point.normal.dot(pose.p_ME) - point.along_normal;
   };
   for (const Point& point : skin_) {
-    if (facing(point) > kFacing) add(point.p, &skin);
+    if (towards(point) > facing) add(point.p, &skin);
   }
   for (const Point& point : hair_) {
-    if (facing(point) > kFacing) add(point.p, &hair);
+    if (towards(point) > facing) add(point.p, &hair);
   }
   for (const Point& point : outline_) {
-    if (std::abs(facing(point)) >= kGrazing) continue;
+    if (std::abs(towards(point)) >= grazing) continue;
     for (const float beyond : kBeyond_m) add(point.p + beyond * point.normal, &round);
   }
   return kSkinShare * skin.Differs(round) + (1 - kSkinShare) * hair.Differs(round);

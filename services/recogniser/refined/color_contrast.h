@@ -22,6 +22,7 @@ class ColorContrast {
  private:
   struct Point {
     Eigen::Vector3f p, normal;  ///< M [m]
+    float along_normal;         ///< p . normal
   };
   std::vector<Point> skin_, hair_, outline_;
 };

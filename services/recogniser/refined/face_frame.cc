@@ -1,6 +1,7 @@
 #include "services/recogniser/refined/face_frame.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "services/recogniser/refined/pose_equations.h"
@@ -11,7 +12,6 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int kLevel = 5;
-constexpr double kGenericSpacing_m = 0.003;
 constexpr float kBeyondCone = 0.15f;  ///< cosine; wider than kNear_m on any head
 constexpr float kSmooth_m = 0.003f, kNear_m = 0.008f, kLeastWeight = 0.3f;
 
@@ -25,16 +25,20 @@ struct Kind {
     return weight * misfit / std::sqrt(1 + misfit * misfit / (limit * limit));
   }
 };
-constexpr Kind kMirrorLooks{0.5, 2, 0.3};       ///< of the face's contrast
-constexpr Kind kMirrorShape{0.001, 3, 0.1};     ///< [m]
-constexpr Kind kFeatures{1, 2, 0.1};            ///< of the face's contrast
-constexpr Kind kGenericShape{0.001, 10, 0.02};  ///< [m]
-constexpr double kOrigin_m = 0.001;             ///< the outlines have told it
+constexpr Kind kMirrorLooks{0.5, 2, 0.3};             ///< of the face's contrast
+constexpr Kind kMirrorShape{0.001, 3, 0.1};           ///< [m]
+constexpr Kind kShape{0.0015, 3, 0.25};               ///< [m] that the modes leave
+constexpr Kind kLooks{1, 2, 0.35};                    ///< of what is known of a place
+constexpr float kOwnDoubt = 0.2f, kLeastGain = 0.4f;  ///< as LooksFit
+constexpr double kIndependence = 0.12;                ///< likewise
 
 constexpr double kLeastInformation = 1e-3;  ///< [1/rad^2]
-constexpr int kMostSteps = 12, kPerPoint = 4;
+constexpr int kPerPoint = 4, kMostSteps = 12, kFewSteps = 3;
+constexpr std::size_t kBestStarts = 3;
 constexpr double kMoved_m = 5e-5, kTurned_rad = 5e-4;  ///< steps so small change nothing
 constexpr double kProbe_m = 5e-4, kProbe_rad = 6e-3;   ///< of the numeric derivative
+constexpr double kStartY_m = 0.010, kStartNod_rad = 0.13, kStartYaw_rad = 0.07;
+constexpr int kStartsY = 3, kStartsNod = 2, kStartsYaw = 1;  ///< to either side
 
 float Mean(const std::vector<float>& by_vertex, const Icosphere::Place& place) {
   float sum = 0;
@@ -45,30 +49,34 @@ float Mean(const std::vector<float>& by_vertex, const Icosphere::Place& place) {
   return sum;
 }
 
-}  // namespace
-
-FaceFrame::FaceFrame(const HeadSurface& generic)
-    : sphere_(kLevel), generic_radii_(RadiiOf(generic)) {
-  const FacePoints dense = FacePointsOf(generic, kGenericSpacing_m);
-  std::vector<Vector3f> points;
-  std::array<std::vector<float>, kNumBands> values;
-  for (std::size_t i = 0; i < dense.size(); ++i) {
-    if (!dense.has_generic[i]) continue;
-    points.push_back(dense.points[i]);
-    for (const Band band : {kCoarseBand, kFineBand}) values[band].push_back(dense.generic[band][i]);
-  }
-  generic_looks_ = LooksOf(points, values);
+/// The linear parameters x, a priori of variance 1, that make A x closest to b.
+Eigen::VectorXd Solve(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  Eigen::MatrixXd H = A.transpose() * A;
+  H.diagonal().array() += 1;
+  return H.ldlt().solve(A.transpose() * b);
 }
 
-std::array<FaceFrame::Looks, kNumBands> FaceFrame::LooksOf(
-    const std::vector<Vector3f>& points,
-    const std::array<std::vector<float>, kNumBands>& value) const {
+}  // namespace
+
+FaceFrame::FaceFrame(const AdultHead& adult)
+    : adult_(adult),
+      sphere_(kLevel),
+      shape_sphere_(Icosphere::LevelOf(static_cast<std::size_t>(adult.shape_modes_m.rows()))),
+      adult_radii_m_([&] {
+        Eigen::VectorXd radii(adult.shape_modes_m.rows());
+        for (Eigen::Index i = 0; i < radii.size(); ++i) {
+          radii[i] = static_cast<double>(
+              adult.surface.Radius(shape_sphere_.vertices()[static_cast<std::size_t>(i)]));
+        }
+        return radii;
+      }()) {}
+
+FaceFrame::Looks FaceFrame::LooksOf(const std::vector<Vector3f>& points,
+                                    const std::vector<float>& value) const {
   const std::vector<Vector3f>& directions = sphere_.vertices();
-  std::array<Looks, kNumBands> looks;
-  for (Looks& l : looks) {
-    l.value.assign(directions.size(), 0);
-    l.known.assign(directions.size(), 0);
-  }
+  Looks looks;
+  looks.value.assign(directions.size(), 0);
+  looks.known.assign(directions.size(), 0);
   Vector3f middle = Vector3f::Zero();
   for (const Vector3f& p : points) middle += p.normalized();
   middle.normalize();
@@ -76,21 +84,18 @@ std::array<FaceFrame::Looks, kNumBands> FaceFrame::LooksOf(
   for (const Vector3f& p : points) widest = std::min(widest, middle.dot(p.normalized()));
   for (std::size_t v = 0; v < directions.size(); ++v) {
     if (middle.dot(directions[v]) < widest - kBeyondCone) continue;
-    std::array<float, kNumBands> sums{};
-    float weights = 0;
+    float sum = 0, weights = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const float along = points[i].dot(directions[v]);
       const float aside = points[i].squaredNorm() - along * along;
       if (along < 0 || aside > kNear_m * kNear_m) continue;
       const float weight = std::exp(-aside / (2 * kSmooth_m * kSmooth_m));
-      for (std::size_t band = 0; band < kNumBands; ++band) sums[band] += weight * value[band][i];
+      sum += weight * value[i];
       weights += weight;
     }
     if (weights <= kLeastWeight) continue;
-    for (std::size_t band = 0; band < kNumBands; ++band) {
-      looks[band].known[v] = 1;
-      looks[band].value[v] = sums[band] / weights;
-    }
+    looks.known[v] = 1;
+    looks.value[v] = sum / weights;
   }
   return looks;
 }
@@ -102,51 +107,115 @@ std::vector<float> FaceFrame::RadiiOf(const HeadSurface& surface) const {
   return radii;
 }
 
-void FaceFrame::Misfits(Asked* asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const {
-  auto& [points, value, radii, generic, looks, contrast, triangles] = *asked;
-  misfits->setZero(static_cast<Eigen::Index>(points.size()) * kPerPoint);
+void FaceFrame::AddMirrored(Asked* asked, const RigidTransform& X_MN, double* misfits) const {
+  auto& [points, value, radii, looks, contrast, triangles] = *asked;
   const Eigen::Isometry3f X(X_MN.matrix().cast<float>()), X_back = X.inverse();
-  std::vector<std::pair<std::size_t, float>> features;  // points where the generic face says one
   for (std::size_t i = 0; i < points.size(); ++i) {
-    double* const out = misfits->data() + static_cast<std::ptrdiff_t>(i) * kPerPoint;
     const Vector3f p_M = X * points[i];
     const Vector3f mirrored = X_back * Vector3f(-p_M.x(), p_M.y(), p_M.z());
     const Icosphere::Place other_side = sphere_.LocateNear(mirrored, &triangles[i][0]);
     const float beyond = mirrored.norm() - Mean(radii, other_side);
-    out[0] = kMirrorShape.Misfit(static_cast<double>(beyond));
-    if (looks.Knows(other_side)) {
-      const float other = Mean(looks.value, other_side);
-      out[1] = kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / contrast);
-    }
-    const Icosphere::Place place = sphere_.LocateNear(p_M, &triangles[i][1]);
-    const float over = p_M.norm() - Mean(generic_radii_, place);
-    out[2] = kGenericShape.Misfit(static_cast<double>(over));
-    if (generic.Knows(place)) features.emplace_back(i, Mean(generic.value, place));
-  }
-  // value = gain * feature + offset
-  double n = 0, f = 0, v = 0, ff = 0, fv = 0;
-  for (const auto& [i, feature_f] : features) {
-    const double feature = static_cast<double>(feature_f), seen = static_cast<double>(value[i]);
-    n += 1;
-    f += feature;
-    v += seen;
-    ff += feature * feature;
-    fv += feature * seen;
-  }
-  const double gain = (n * fv - f * v) / std::max(n * ff - f * f, 1e-12);
-  const double offset = (v - gain * f) / std::max(n, 1.0);
-  for (const auto& [i, feature] : features) {
-    const double expected = gain * static_cast<double>(feature) + offset;
-    (*misfits)[static_cast<Eigen::Index>(i) * kPerPoint + 3] =
-        kFeatures.Misfit((static_cast<double>(value[i]) - expected) / contrast);
+    misfits[2 * i] = kMirrorShape.Misfit(static_cast<double>(beyond));
+    if (!looks.Knows(other_side)) continue;
+    const float other = Mean(looks.value, other_side);
+    misfits[2 * i + 1] = kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / contrast);
   }
 }
 
-RigidTransform FaceFrame::Refine(Asked* asked, const RigidTransform& X_start,
-                                 const Eigen::Vector3d& p_NM) const {
+double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, double* misfits) const {
+  constexpr int kModes = AdultLooks::kModes;
+  const Eigen::Isometry3f X(X_MN.matrix().cast<float>());
+  const auto size = static_cast<Eigen::Index>(asked.points.size());
+  Eigen::MatrixXd modes(size, kModes);
+  Eigen::VectorXd mean(size), value(size), weight(size);
+  Eigen::Index n = 0;
+  for (std::size_t i = 0; i < asked.points.size(); ++i) {
+    const Vector3f p = X * asked.points[i];
+    if (p.z() > -0.03f) continue;
+    const AdultLooks::Place place = adult_.looks.At(p.x(), p.y());
+    if (!place.known) continue;
+    mean[n] = static_cast<double>(place.mean[kFineBand]);
+    value[n] = static_cast<double>(asked.value[i]);
+    weight[n] = 1 / static_cast<double>(place.doubt * place.doubt + kOwnDoubt * kOwnDoubt);
+    for (int k = 0; k < kModes; ++k)
+      modes(n, k) = static_cast<double>(place.modes[static_cast<std::size_t>(k)]);
+    ++n;
+  }
+  if (n < 100) {
+    for (Eigen::Index i = 0; i < size; ++i) misfits[i] = kLooks.weight * kLooks.limit;
+    return 0;
+  }
+  Eigen::VectorXd a = Eigen::VectorXd::Zero(kModes), off(n);
+  double likeness = 0;
+  const Eigen::VectorXd w = weight.head(n), v = value.head(n);
+  const double sum = w.sum(), y = w.dot(v) / sum;
+  const double var_y = (w.array() * (v.array() - y).square()).sum();
+  for (int round = 0; round < 3; ++round) {
+    const Eigen::VectorXd pattern = mean.head(n) + modes.topRows(n) * a;
+    const double x = w.dot(pattern) / sum;
+    const double var_x = (w.array() * (pattern.array() - x).square()).sum();
+    const double cov = (w.array() * (pattern.array() - x) * (v.array() - y)).sum();
+    const double gain =
+        std::max(cov / var_x, static_cast<double>(kLeastGain) * std::sqrt(var_y / var_x));
+    const Eigen::VectorXd seen = ((v.array() - y) / gain + x).matrix();
+    off = seen - pattern;
+    likeness = 1 - (w.dot(off.cwiseAbs2()) + a.squaredNorm() / kIndependence) * gain * gain / var_y;
+    if (round == 2) break;
+    const Eigen::VectorXd root =
+        (w.array() / (1 + off.array().square() * w.array() / (kLooks.limit * kLooks.limit)))
+            .sqrt() *
+        kLooks.weight;
+    a = Solve(root.asDiagonal() * modes.topRows(n), root.cwiseProduct(seen - mean.head(n)));
+  }
+  for (Eigen::Index i = 0; i < n; ++i) misfits[i] = kLooks.Misfit(off[i] * std::sqrt(w[i]));
+  for (Eigen::Index i = n; i < size; ++i) misfits[i] = kLooks.weight;  // nothing is seen there
+  for (int k = 0; k < kModes; ++k) misfits[size + k] = a[k];
+  return likeness;
+}
+
+void FaceFrame::AddShape(Asked* asked, const RigidTransform& X_MN, double* misfits) const {
+  const Eigen::MatrixXd& all = adult_.shape_modes_m;
+  const Eigen::Isometry3f X(X_MN.matrix().cast<float>());
+  const auto size = static_cast<Eigen::Index>(asked->points.size());
+  Eigen::MatrixXd modes(size, all.cols());
+  Eigen::VectorXd beyond(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vector3f p = X * asked->points[k];
+    const Icosphere::Place place = shape_sphere_.LocateNear(p, &asked->triangles[k][1]);
+    modes.row(i).setZero();
+    beyond[i] = static_cast<double>(p.norm());
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto share = static_cast<double>(place.weights[static_cast<int>(c)]);
+      modes.row(i) += share * all.row(place.corners[c]);
+      beyond[i] -= share * adult_radii_m_[place.corners[c]];
+    }
+  }
+  const double unit = kShape.weight / kShape.sigma;
+  Eigen::VectorXd c = Solve(unit * modes, unit * beyond);
+  // Once more without what is far off.
+  Eigen::VectorXd off = beyond - modes * c;
+  const Eigen::VectorXd root =
+      unit * (1 + (off.array() / (kShape.sigma * kShape.limit)).square()).sqrt().inverse();
+  c = Solve(root.asDiagonal() * modes, root.cwiseProduct(beyond));
+  off = beyond - modes * c;
+  for (Eigen::Index i = 0; i < size; ++i) misfits[i] = kShape.Misfit(off[i]);
+  for (Eigen::Index k = 0; k < all.cols(); ++k) misfits[size + k] = c[k];
+}
+
+void FaceFrame::Misfits(Asked* asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const {
+  const auto size = static_cast<Eigen::Index>(asked->points.size());
+  misfits->setZero(kPerPoint * size + AdultLooks::kModes + adult_.shape_modes_m.cols());
+  AddMirrored(asked, X_MN, misfits->data());
+  AddLooks(*asked, X_MN, misfits->data() + 2 * size);
+  AddShape(asked, X_MN, misfits->data() + 3 * size + AdultLooks::kModes);
+}
+
+RigidTransform FaceFrame::Refine(Asked* asked, const RigidTransform& X_start, int most_steps,
+                                 double* badness) const {
   RigidTransform X_MN = X_start;
   Eigen::VectorXd now, more, less;
-  for (int k = 0; k < kMostSteps; ++k) {
+  for (int k = 0; k < most_steps; ++k) {
     Misfits(asked, X_MN, &now);
     Eigen::MatrixXd J(now.size(), 6);
     for (int i = 0; i < 6; ++i) {
@@ -157,40 +226,62 @@ RigidTransform FaceFrame::Refine(Asked* asked, const RigidTransform& X_start,
       J.col(i) = (more - less) / (2 * probe[i]);
     }
     Matrix6d H = J.transpose() * J;
-    Vector6d g = -J.transpose() * now;
-    // The outlines' origin is M's.
-    H.diagonal().head<3>().array() += 1 / (kOrigin_m * kOrigin_m);
-    g.head<3>() -= X_MN * p_NM / (kOrigin_m * kOrigin_m);
+    const Vector6d g = -J.transpose() * now;
     H.diagonal().tail<3>().array() += kLeastInformation;
+    H.diagonal().head<3>().array() += kLeastInformation;
     const Vector6d step = H.ldlt().solve(g);
     if (!step.allFinite()) break;
     X_MN = Moved(X_MN, step);
     if (step.head<3>().norm() < kMoved_m && step.tail<3>().norm() < kTurned_rad) break;
   }
+  Misfits(asked, X_MN, &now);
+  *badness = now.squaredNorm();
   return X_MN;
 }
 
-// Coarse looks lead from farther away, fine ones are exact.
-RigidTransform FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface,
-                               const Eigen::Vector3d& p_NM) const {
-  RigidTransform X_MN = MakeTransform(Eigen::Matrix3d::Identity(), -p_NM);
-  const std::array<Looks, kNumBands> looks = LooksOf(face.points, face.value);
+FaceFrame::Found FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface) const {
+  const std::vector<float>& value = face.value[kFineBand];
+  double sum = 0;
+  for (const float v : value) sum += static_cast<double>(v * v);
+  if (!(sum > 0)) return {RigidTransform::Identity(), 0};
+  const Looks looks = LooksOf(face.points, value);
   const std::vector<float> radii = RadiiOf(surface);
-  for (const Band band : {kCoarseBand, kFineBand}) {
-    const std::vector<float>& value = face.value[band];
-    double sum = 0;
-    for (const float v : value) sum += static_cast<double>(v * v);
-    if (!(sum > 0)) continue;
-    Asked asked{face.points,
-                value,
-                radii,
-                generic_looks_[band],
-                looks[band],
-                std::sqrt(sum / static_cast<double>(value.size())),
-                std::vector<std::array<std::size_t, 2>>(value.size())};
-    X_MN = Refine(&asked, X_MN, p_NM);
+  Asked asked{face.points,
+              value,
+              radii,
+              looks,
+              std::sqrt(sum / static_cast<double>(value.size())),
+              std::vector<std::array<std::size_t, 2>>(value.size())};
+  struct Start {
+    double badness;
+    RigidTransform X_MN;
+  };
+  std::vector<Start> starts;
+  Eigen::VectorXd misfits;
+  for (int i = -kStartsY; i <= kStartsY; ++i) {
+    for (int j = -kStartsNod; j <= kStartsNod; ++j) {
+      for (int k = -kStartsYaw; k <= kStartsYaw; ++k) {
+        const RigidTransform X_turn =
+            MakeTransform(RotationFromAngles({0, kStartYaw_rad * k, kStartNod_rad * j}),
+                          Eigen::Vector3d(0, kStartY_m * i, 0));
+        Misfits(&asked, X_turn, &misfits);
+        starts.push_back({misfits.squaredNorm(), X_turn});
+      }
+    }
   }
-  return X_MN;
+  std::sort(starts.begin(), starts.end(),
+            [](const Start& a, const Start& b) { return a.badness < b.badness; });
+  starts.resize(std::min(starts.size(), kBestStarts));
+  for (Start& start : starts) start.X_MN = Refine(&asked, start.X_MN, kFewSteps, &start.badness);
+  const Start& best =
+      *std::min_element(starts.begin(), starts.end(),
+                        [](const Start& a, const Start& b) { return a.badness < b.badness; });
+  double ignored = 0;
+  Found found;
+  found.X_MN = Refine(&asked, best.X_MN, kMostSteps, &ignored);
+  misfits.setZero(static_cast<Eigen::Index>(value.size()) + AdultLooks::kModes);
+  found.likeness = AddLooks(asked, found.X_MN, misfits.data());
+  return found;
 }
 
 }  // namespace visavis

@@ -4,26 +4,30 @@
 #include <vector>
 
 #include "common/geometry/rigid_transform.h"
-#include "services/recogniser/refined/face_points.h"
+#include "services/recogniser/refined/adult_head.h"
 #include "services/recogniser/refined/icosphere.h"
 #include "services/recogniser/refined/learned_face.h"
 
 namespace visavis {
 
-/// Where the head's frame lies on a face of known shape and looks. Whoever has seen the face from
-/// whatever side finds the same: the frame's plane x = 0 is the plane of symmetry of looks and
-/// shape; how far it nods is told by the features' height and the slope of the generic face.
+/// Where the head's frame lies on a face of known shape and looks: where both are most like those
+/// of adults (AdultHead), whichever these are, and most like their own mirror images. Whoever has
+/// seen the face from whatever side finds the same.
 class FaceFrame {
  public:
-  explicit FaceFrame(const HeadSurface& generic);
+  /// @p adult is aliased.
+  explicit FaceFrame(const AdultHead& adult);
 
-  /// X_MN of the frame N in which @p face and @p surface are given: the head's frame M is turned
-  /// from N by some degrees, and has its origin about @p p_NM, as the outlines have told.
-  RigidTransform Find(const LearnedFace& face, const HeadSurface& surface,
-                      const Eigen::Vector3d& p_NM) const;
+  struct Found {
+    RigidTransform X_MN;
+    double likeness;  ///< of the face there, as LooksFit's
+  };
+  /// M in the frame N in which @p face and @p surface are given; it may be turned from N by some
+  /// 15 deg and lie 30 mm away.
+  Found Find(const LearnedFace& face, const HeadSurface& surface) const;
 
  private:
-  /// Brightness of a band by direction; not known where no point is near.
+  /// Brightness by direction; not known where no point is near.
   struct Looks {
     std::vector<float> value;
     std::vector<unsigned char> known;  ///< by vertex of the sphere
@@ -36,27 +40,30 @@ class FaceFrame {
   };
   struct Asked {
     const std::vector<Eigen::Vector3f>& points;
-    const std::vector<float>& value;  ///< of one band, at the points
+    const std::vector<float>& value;  ///< of the fine band, at the points
     const std::vector<float>& radii;  ///< [m] of its surface, by vertex
-    const Looks &generic, &looks;
+    const Looks& looks;
     double contrast;  ///< rms of the face's brightness
     /// By point, where its place and its mirrored one were found last: they hardly move.
     std::vector<std::array<std::size_t, 2>> triangles;
   };
 
-  std::array<Looks, kNumBands> LooksOf(
-      const std::vector<Eigen::Vector3f>& points,
-      const std::array<std::vector<float>, kNumBands>& value) const;
+  Looks LooksOf(const std::vector<Eigen::Vector3f>& points, const std::vector<float>& value) const;
   /// [m] of @p surface, by vertex of the sphere.
   std::vector<float> RadiiOf(const HeadSurface& surface) const;
-  RigidTransform Refine(Asked* asked, const RigidTransform& X_MN,
-                        const Eigen::Vector3d& p_NM) const;
+  RigidTransform Refine(Asked* asked, const RigidTransform& X_MN, int most_steps,
+                        double* badness) const;
   /// What speaks against X_MN, each in its standard deviation.
   void Misfits(Asked* asked, const RigidTransform& X_MN, Eigen::VectorXd* misfits) const;
+  void AddMirrored(Asked* asked, const RigidTransform& X_MN, double* misfits) const;
+  /// @return the likeness
+  double AddLooks(const Asked& asked, const RigidTransform& X_MN, double* misfits) const;
+  void AddShape(Asked* asked, const RigidTransform& X_MN, double* misfits) const;
 
+  const AdultHead& adult_;
   const Icosphere sphere_;
-  const std::vector<float> generic_radii_;
-  std::array<Looks, kNumBands> generic_looks_;
+  const Icosphere shape_sphere_;
+  const Eigen::VectorXd adult_radii_m_;  ///< by vertex of the shape's sphere
 };
 
 }  // namespace visavis

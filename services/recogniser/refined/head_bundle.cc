@@ -14,13 +14,34 @@ constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
 constexpr int kRadiusSteps = 4;  ///< of a fixed point iteration
 constexpr float kMinFacing = 0.6f;
-constexpr ShapeEquations::Prior kPrior{0.010, 0.0008};
+// What the modes of adults' faces leave of a shape, where they tell of it and elsewhere.
+constexpr double kOwn_m = 0.001, kOwnRoughness_m = 0.0002;
+constexpr double kOutside_m = 0.010, kOutsideRoughness_m = 0.0008;
 /// Neighbouring points and both bands see the same noise and the same errors.
-constexpr double kIndependence = 0.1, kOutlineIndependence = 0.3;
+constexpr double kIndependence = 0.05, kOutlineIndependence = 0.3;
+constexpr float kStereoFacing = 0.75f;
+constexpr double kStereoIndependence = 1;
+constexpr float kStereoSigma = 0.06f;  ///< of brightness, that the eyes differ by: of the contrast
 constexpr float kRelativeSigma = 0.35f, kNoise = 0.5f;  ///< as in the refiner: contrast, levels
 
 PixelBox Common(const PixelBox& a, const PixelBox& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+ShapeEquations::Prior PriorOf(const ShapeEquations& shape) {
+  ShapeEquations::Prior prior = shape.UniformPrior(kOwn_m, kOwnRoughness_m);
+  prior.modes_m = TheAdult().shape_modes_m;
+  for (Eigen::Index i = 0; i < prior.modes_m.rows(); ++i) {
+    if (!prior.modes_m.row(i).isZero()) continue;
+    prior.displacement_m[i] = kOutside_m;
+    prior.roughness_m[i] = kOutsideRoughness_m;
+  }
+  return prior;
+}
+
+/// Inverse variance of a measurement that is off by @p residual, where @p sigma is expected.
+double Robust(float residual, float sigma) {
+  return 1 / static_cast<double>(sigma * sigma + residual * residual / 4);
 }
 
 }  // namespace
@@ -56,6 +77,7 @@ HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double
       bands_{BandImages(pair_.eye(0).width, pair_.eye(0).height),
              BandImages(pair_.eye(1).width, pair_.eye(1).height)},
       shape_(kShapeLevel),
+      prior_(PriorOf(shape_)),
       displaced_(start_table_.radii_m.size()),
       model_(std::make_unique<Model>(config, head)) {}
 
@@ -144,10 +166,32 @@ void HeadBundle::AddShape(const HeadView& view, Band band) {
       if (!s.seen[i] || !model_->texture.known(band)[i]) continue;
       const Eigen::Vector3f d = points.points[i].normalized();
       const float residual = gain * pattern[i] + offset - s.value[i];
-      const float robust = 1 + residual * residual / (4 * sigma * sigma);
       shape_.Add(d, static_cast<double>(s.slope[i].dot(R_CM * d)), static_cast<double>(residual),
-                 kIndependence / static_cast<double>(sigma * sigma * robust));
+                 kIndependence * Robust(residual, sigma));
     }
+  }
+}
+
+// Within a pair both eyes see the same light on the head.
+void HeadBundle::AddStereoShape(const HeadView& view) {
+  if (!view_[0].seen() || !view_[1].seen()) return;
+  const FacePoints& points = model_->texture.points();
+  const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
+  FaceSamples right(points.size()), left(points.size());
+  for (const std::size_t eye : {0, 1})
+    SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), kBrightness, kStereoFacing,
+               eye == 0 ? &right : &left);
+  const GainOffset fit = FitEyes(right, left, points.size());
+  if (fit.count < kFewestPoints) return;
+  const auto gain = static_cast<float>(fit.gain), offset = static_cast<float>(fit.offset);
+  const float sigma = kStereoSigma * static_cast<float>(fit.pattern_rms) + kNoise;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!right.seen[i] || !left.seen[i]) continue;
+    const Eigen::Vector3f d = points.points[i].normalized();
+    const float residual = gain * left.value[i] + offset - right.value[i];
+    const Eigen::Vector3f slope = right.slope[i] - gain * left.slope[i];
+    shape_.Add(d, static_cast<double>(slope.dot(R_CM * d)), static_cast<double>(residual),
+               kStereoIndependence * Robust(residual, sigma));
   }
 }
 
@@ -165,7 +209,7 @@ void HeadBundle::AddOutline(const HeadView& view) {
 }
 
 double HeadBundle::MoveSurface() {
-  const std::vector<float> movement = shape_.Solve(displaced_, kPrior);
+  const std::vector<float> movement = shape_.Solve(displaced_, prior_);
   double sum = 0;
   for (std::size_t i = 0; i < displaced_.size(); ++i) {
     displaced_[i] += movement[i];
@@ -212,6 +256,7 @@ HeadBundle::Agreement HeadBundle::Round() {
   for (const HeadView& view : views_) {
     Look(view);
     for (const Band band : {kFineBand, kCoarseBand}) AddShape(view, band);
+    AddStereoShape(view);
     AddOutline(view);
   }
   agreement.moved_m = MoveSurface();

@@ -78,6 +78,7 @@ class HeadBundle {
   void LearnTexture();
   Agreement RefinePoses();
   void AddShape(const HeadView& view, Band band);
+  void AddStereoShape(const HeadView& view);
   void AddOutline(const HeadView& view);
   double MoveSurface();
   void RebuildModel();
@@ -93,6 +94,7 @@ class HeadBundle {
   StereoView view_;
   std::vector<HeadView> views_;
   ShapeEquations shape_;
+  const ShapeEquations::Prior prior_;
   std::vector<float> displaced_;  // from start_table_, by vertex
   std::unique_ptr<Model> model_;
 };

@@ -3,8 +3,8 @@
 namespace visavis {
 
 Eigen::Vector3d AdultEyes() {
-  const HeadShape shape;
-  const HeadSurface adult(shape);
+  const HeadSurface& adult = TheAdult().surface;
+  const HeadShape& shape = adult.shape();
   float inside = 0, outside = 0.2f;
   for (int k = 0; k < 22; ++k) {
     const float depth = 0.5f * (inside + outside);

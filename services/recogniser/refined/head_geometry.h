@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/geometry/rigid_transform.h"
+#include "services/recogniser/refined/adult_head.h"
 #include "services/recogniser/refined/head_surface.h"
 #include "services/recogniser/refined/learned_face.h"
 
@@ -13,7 +14,7 @@ namespace visavis {
 /// adult has them (HeadShape::eye_y): what the estimator knows about faces is laid out in it.
 /// Poses are reported in the head's frame R, with M's axes and an origin of its own.
 struct HeadGeometry {
-  HeadSurface surface{HeadShape{}};
+  HeadSurface surface = TheAdult().surface;
   Eigen::Vector3d p_MR_m{0, 0, 0};  ///< R's origin in M
   /// How an enrolled face looks. Its frame is fixed then, by these points; without, it is learned.
   std::optional<LearnedFace> face{};

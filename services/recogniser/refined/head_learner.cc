@@ -7,8 +7,8 @@
 namespace visavis {
 namespace {
 
-constexpr int kFirstFrame = 30;  ///< with a track, at which learning begins, if only of one view
-constexpr int kFrames = 15, kFramesPerView = 1;  ///< that learning takes
+constexpr int kFirstFrame = 10;  ///< with a track, at which learning begins, if only of one view
+constexpr int kFrames = 12, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
 constexpr int kLongest = 150;                    ///< frames after which one view more will do
 constexpr int kTurns = 2, kRounds = 2;           ///< of the bundle, each turn with a new frame
@@ -25,9 +25,8 @@ struct HeadLearner::Work {
 
   void Run() {
     if (!bundle) {
-      finder = std::make_unique<FaceFrame>(start.surface);
+      finder = std::make_unique<FaceFrame>(TheAdult());
       bundle = std::make_unique<HeadBundle>(config, rig, distance_m, start, colors);
-      for (const HeadView& view : new_views) X_CA.push_back(view.X_CM);
     }
     bundle->SetColors(colors);
     for (HeadView& view : new_views) bundle->Add(std::move(view));
@@ -38,7 +37,9 @@ struct HeadLearner::Work {
       if (IsSeenWidely()) bundle->Rebase();  // then the generic shape has nothing to add
       for (int round = 0; round < kRounds; ++round) bundle->Round();
       const HeadGeometry head = bundle->Enrolled();
-      bundle->MoveFrame(finder->Find(*head.face, head.surface, Anchor().inverse().translation()));
+      const FaceFrame::Found found = finder->Find(*head.face, head.surface);
+      bundle->MoveFrame(found.X_MN);
+      learned.likeness = found.likeness;
     }
     learned.head = std::make_unique<PreparedHead>(config, bundle->Enrolled());
     learned.X_MN = bundle->pose(last).inverse() * X_CN;
@@ -53,19 +54,6 @@ struct HeadLearner::Work {
     return least < std::cos(kWidely_rad);
   }
 
-  /// X_AN: the frame that the first views were told in, from the bundle's.
-  RigidTransform Anchor() const {
-    RigidTransform X_AN = X_CA[0].inverse() * bundle->pose(0);
-    Vector6d sum = Vector6d::Zero();
-    for (std::size_t i = 0; i < X_CA.size(); ++i) {
-      const RigidTransform off = X_CA[i].inverse() * bundle->pose(i) * X_AN.inverse();
-      sum.head<3>() += off.translation();
-      sum.tail<3>() += LogRotation(off.linear());
-    }
-    sum /= static_cast<double>(X_CA.size());
-    return MakeTransform(ExpRotation(sum.tail<3>()), Eigen::Vector3d(sum.head<3>())) * X_AN;
-  }
-
   const RefinerConfig config;
   const StereoRig rig;
   const double distance_m;
@@ -74,7 +62,6 @@ struct HeadLearner::Work {
   std::vector<HeadView> new_views;
   std::unique_ptr<FaceFrame> finder;
   std::unique_ptr<HeadBundle> bundle;
-  std::vector<RigidTransform> X_CA;  ///< of the first views, as they were given
   Learned learned;
 };
 

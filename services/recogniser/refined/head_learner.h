@@ -40,6 +40,7 @@ class HeadLearner {
   struct Learned {
     std::unique_ptr<PreparedHead> head;  ///< with its face
     RigidTransform X_MN;                 ///< of the frame that views were told in before
+    double likeness{0};                  ///< of the face to faces, see FaceFrame
   };
   /// Once a frame with a track: what was learned, where it is time for it; else a null head.
   Learned Step();

@@ -9,6 +9,8 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr float kOnHairline_m = 0.001f;
+constexpr float kOutline_m = 0.004f;    ///< what an outline may be off by where the head is known
+constexpr float kHairDoubt_m = 0.012f;  ///< at least: hair may be done in any way
 
 bool IsFeature(const HeadShape& s, const Vector3f& p) {
   if (p.z() > -0.045f) return false;
@@ -28,6 +30,13 @@ float ContourWeight(const Vector3f& p, HeadPart part) {
   return below_jaw || nape || ear || long_hair ? 0.0f : 1.0f;
 }
 
+/// Of the outline there: 1 on a head that is known.
+float Certainty(const HeadSurface& surface, const Vector3f& p, HeadPart part) {
+  float sigma = surface.Sigma(p);
+  if (part == HeadPart::kHair && sigma > 0) sigma = std::max(sigma, kHairDoubt_m);
+  return kOutline_m / std::hypot(kOutline_m, sigma);
+}
+
 }  // namespace
 
 HeadMesh MeshOf(const HeadSurface& surface, int level) {
@@ -45,7 +54,7 @@ HeadMesh MeshOf(const HeadSurface& surface, int level) {
   }
   for (const Vector3f& p : mesh.vertices) {
     HeadPart part = surface.HairSide(p) > 0 ? HeadPart::kHair : HeadPart::kSkin;
-    mesh.contour_weights.push_back(ContourWeight(p, part));
+    mesh.contour_weights.push_back(ContourWeight(p, part) * Certainty(surface, p, part));
     if (part == HeadPart::kSkin && IsFeature(surface.shape(), p)) part = HeadPart::kFeature;
     mesh.parts.push_back(part);
     const bool chin = p.y() > 0.098f || (p.y() > 0.043f && p.z() > -0.005f);

@@ -29,6 +29,7 @@ void HeadTable::ValidateOrThrow() const {
   VISAVIS_THROW_UNLESS(Icosphere::LevelOf(radii_m.size()) >= 0, radii_m.size());
   VISAVIS_THROW_UNLESS(hair_side_m.empty() || hair_side_m.size() == radii_m.size(),
                        hair_side_m.size());
+  VISAVIS_THROW_UNLESS(sigma_m.empty() || sigma_m.size() == radii_m.size(), sigma_m.size());
   for (const float radius : radii_m) {
     VISAVIS_THROW_UNLESS(radius >= kMinRadius_m && radius <= kMaxRadius_m, radius);
   }
@@ -56,6 +57,10 @@ TabulatedHead::TabulatedHead(HeadTable table)
 
 float TabulatedHead::Radius(const Vector3f& direction) const {
   return Between(sphere_.Locate(direction), table_.radii_m);
+}
+
+float TabulatedHead::Sigma(const Vector3f& direction) const {
+  return table_.sigma_m.empty() ? 0 : Between(sphere_.Locate(direction), table_.sigma_m);
 }
 
 float TabulatedHead::HairSide(const Vector3f& direction) const {

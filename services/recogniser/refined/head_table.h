@@ -14,6 +14,8 @@ struct HeadTable {
   /// Distance along the surface from the border between hair and skin, positive in the hair. Empty:
   /// the plane C_h of the HeadShape that goes with the table tells.
   std::vector<float> hair_side_m;
+  /// Standard deviation of the radii. Empty: they are known.
+  std::vector<float> sigma_m;
 
   /// @throws std::invalid_argument for a number of entries that no level has, and for radii that
   /// are not kMinRadius_m to kMaxRadius_m.
@@ -32,6 +34,8 @@ class TabulatedHead {
   const Icosphere& sphere() const { return sphere_; }
   /// [m] in @p direction.
   float Radius(const Eigen::Vector3f& direction) const;
+  /// [m] standard deviation of the radius in @p direction.
+  float Sigma(const Eigen::Vector3f& direction) const;
   bool has_hair_side() const { return !table_.hair_side_m.empty(); }
   float HairSide(const Eigen::Vector3f& direction) const;
   /// Outward unit normal, smooth.

@@ -9,6 +9,9 @@ namespace visavis {
 namespace {
 
 constexpr int kHairlinePoints = 33;
+constexpr int kMoreRounds = 2;
+constexpr double kWellNcc = 0.92;     ///< of the texture: it fits, no more rounds
+constexpr double kWholeNcc = 0.8;     ///< of the texture: nothing is before the face
 constexpr double kHiddenDoubt = 0.3;  ///< the less is seen, the better it must fit
 // What is before the face has edges of its own, at another depth: beside them the eyes agree on
 // that.
@@ -22,7 +25,10 @@ constexpr float kPatternSigma = 1.0f, kTextureSigma = 0.45f;  ///< of the patter
 // Cosine below which a face point is not looked at: the bands blur what is behind the head into
 // those near the outline.
 constexpr float kMinFacing = 0.6f;
-constexpr float kStereoSigma = 0.35f;  ///< of the face's contrast
+// Of the face's contrast, that the eyes may differ by. On a shape that is only guessed brightness,
+// which varies slowly, would turn the head: the fine band is asked there. On a learned shape bands
+// err where skin is slanted or plain: brightness is asked.
+constexpr float kFineStereoSigma = 0.35f, kBrightnessStereoSigma = 0.08f;
 // One eye's depth comes from the learned face's size, which both eyes fixed, not from the outline.
 constexpr double kOneEyeOutline = 0.05;
 // Depth comes from both eyes: outlines take a large head for a near one.
@@ -34,8 +40,10 @@ PoseRefiner::PoseRefiner(const RefinerConfig& config, const HeadSurface& surface
                          const HeadMesh& mesh, const FacePoints& face)
     : config_(config),
       face_(face),
+      looks_(face),
       contours_(mesh, HairlineOf(surface, kHairlinePoints)),
-      samples_{FaceSamples(face.size()), FaceSamples(face.size())} {}
+      samples_{FaceSamples(face.size()), FaceSamples(face.size())},
+      agreeing_{FaceSamples(face.size()), FaceSamples(face.size())} {}
 
 const FaceSamples& PoseRefiner::Sample(const StereoView& view, std::size_t eye,
                                        const RigidTransform& X_CM, Band band,
@@ -65,22 +73,39 @@ void PoseRefiner::AddContours(const StereoView& view, const std::array<EyePose, 
 }
 
 void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses,
-                                 Band band, double stereo_weight, PoseEquations* equations,
-                                 Refined* refined) {
+                                 Band band, Looks looks, double stereo_weight,
+                                 PoseEquations* equations, Refined* refined) {
+  const auto weight = static_cast<float>(config_.pattern_weight);
+  const bool is_fine = band == kFineBand;
+  std::array<const FaceSamples*, 2> seen{};
   for (std::size_t e = 0; e < 2; ++e) {
     if (!view[e].seen()) continue;
     SampleFace(face_, view[e], poses[e], band, kMinFacing, &samples_[e]);
+    seen[e] = &samples_[e];
+    if (is_fine && looks == Looks::kFitted) continue;
     AddPattern(face_, samples_[e], poses[e].R_CM, face_.generic[band], face_.has_generic,
-               kPatternSigma, static_cast<float>(config_.pattern_weight), equations);
+               kPatternSigma, weight, equations);
   }
-  if (view[0].seen() && view[1].seen()) {
-    refined->stereo_ncc = AddStereo(face_, samples_[0], samples_[1], poses[0].R_CM, kStereoSigma,
-                                    static_cast<float>(stereo_weight), equations);
-  }
+  if (is_fine && looks != Looks::kMean) refined->likeness = looks_.Fit(seen);
+  if (is_fine && looks == Looks::kFitted) looks_.AddTo(seen, poses[0].R_CM, weight, equations);
+  if (seen[0] == nullptr || seen[1] == nullptr) return;
+  refined->stereo_ncc = StereoCorrelation(samples_[0], samples_[1], face_.size());
+  AddAgreement(view, poses, face_, kFineBand, stereo_weight, equations);
+}
+
+void PoseRefiner::AddAgreement(const StereoView& view, const std::array<EyePose, 2>& poses,
+                               const FacePoints& face, Band plane, double weight,
+                               PoseEquations* equations) {
+  if (weight <= 0) return;
+  for (std::size_t e = 0; e < 2; ++e)
+    SampleFace(face, view[e], poses[e], plane, kMinFacing, &agreeing_[e]);
+  AddStereo(face, agreeing_[0], agreeing_[1], poses[0].R_CM,
+            plane == kBrightness ? kBrightnessStereoSigma : kFineStereoSigma,
+            static_cast<float>(weight), equations);
 }
 
 void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
-                             const FaceTexture& texture, PoseEquations* equations,
+                             const FaceTexture& texture, bool hide, PoseEquations* equations,
                              Refined* refined) {
   std::array<FaceSamples*, 2> seen{};
   for (std::size_t e = 0; e < 2; ++e) {
@@ -88,7 +113,7 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
     SampleFace(texture.points(), view[e], poses[e], band, kMinFacing, &samples_[e]);
     seen[e] = &samples_[e];
   }
-  const double hidden = HideOccluded(texture, band, seen);
+  const double hidden = hide ? HideOccluded(texture, band, seen) : 0;
   double sum = 0;
   int points = 0, eyes = 0;
   for (std::size_t e = 0; e < 2; ++e) {
@@ -106,8 +131,9 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
     const double stereo_weight =
         config_.stereo_weight_with_texture *
         std::clamp((kNoStereoHidden - hidden) / (kNoStereoHidden - kStereoHidden), 0.0, 1.0);
-    refined->stereo_ncc = AddStereo(texture.points(), samples_[0], samples_[1], poses[0].R_CM,
-                                    kStereoSigma, static_cast<float>(stereo_weight), equations);
+    refined->stereo_ncc = StereoCorrelation(samples_[0], samples_[1], texture.points().size());
+    AddAgreement(view, poses, texture.points(), texture.fixed() ? kBrightness : kFineBand,
+                 stereo_weight, equations);
   }
 }
 
@@ -118,8 +144,8 @@ PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform&
   ContourFit ignored;
   Refined ignored_too;
   AddContours(view, poses, 6, config_.outline_weight, &equations, &ignored);
-  AddGenericFace(view, poses, kFineBand, kAnchorStereo * config_.stereo_weight, &equations,
-                 &ignored_too);
+  AddGenericFace(view, poses, kFineBand, Looks::kFitted, kAnchorStereo * config_.stereo_weight,
+                 &equations, &ignored_too);
   Matrix6d R = Matrix6d::Zero();
   R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();
   PoseEquations in_head;
@@ -128,8 +154,21 @@ PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform&
   return in_head;
 }
 
+// What a pose that is not right yet leaves unexplained looks like something before the face: so the
+// face is taken to be whole first.
 Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
                             const FaceTexture* texture, int iterations, int reach_px) {
+  Refined whole = Refine(view, X_CM, texture, iterations, reach_px, false);
+  if (texture == nullptr) return whole;
+  for (int k = 0; k < kMoreRounds && whole.texture_ncc < kWellNcc; ++k)
+    whole = Refine(view, whole.X_CM, texture, iterations, reach_px, false);
+  if (whole.texture_ncc > kWholeNcc) return whole;
+  const Refined hidden = Refine(view, X_CM, texture, iterations, reach_px, true);
+  return hidden.texture_ncc > whole.texture_ncc ? hidden : whole;
+}
+
+Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
+                            const FaceTexture* texture, int iterations, int reach_px, bool hide) {
   Refined refined;
   refined.X_CM = X_CM;
   bool near = false;  // so much that the coarse band, which sees less, would only lead astray
@@ -149,14 +188,17 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
                   &refined.contour);
       if (i == 0) {
         PoseEquations fine = equations;
-        AddTexture(view, poses, kFineBand, *texture, &fine, &refined);
+        AddTexture(view, poses, kFineBand, *texture, hide, &fine, &refined);
         near = refined.texture_ncc > kNearNcc;
         if (near) equations = fine;
       }
-      if (i > 0 || !near) AddTexture(view, poses, band, *texture, &equations, &refined);
+      if (i > 0 || !near) AddTexture(view, poses, band, *texture, hide, &equations, &refined);
     } else {
       AddContours(view, poses, reach, config_.outline_weight, &equations, &refined.contour);
-      AddGenericFace(view, poses, band, config_.stereo_weight, &equations, &refined);
+      const Looks looks = iterations > kRough   ? Looks::kFitted
+                          : i + 1 == iterations ? Looks::kMeanAndLikeness
+                                                : Looks::kMean;
+      AddGenericFace(view, poses, band, looks, config_.stereo_weight, &equations, &refined);
     }
     refined.information = equations.Full();
     Vector6d step = refined.information.ldlt().solve(equations.g);

@@ -5,6 +5,7 @@
 #include "common/config/rule.h"
 #include "services/recogniser/refined/contour_term.h"
 #include "services/recogniser/refined/face_texture.h"
+#include "services/recogniser/refined/looks_fit.h"
 
 namespace visavis {
 
@@ -36,6 +37,7 @@ struct Refined {
   RigidTransform X_CM;
   Matrix6d information{Matrix6d::Zero()};  ///< of [dp; w] in C, from the last step's equations
   ContourFit contour;                      ///< both eyes
+  double likeness{0};                      ///< of a face, whoever it is; see LooksFit
   double texture_ncc{0};                   ///< mean of the eyes; 0: not learned
   double stereo_ncc{0};                    ///< correlation of both eyes' views; 0: one eye
   double hidden{0};                        ///< share of the learned face behind something else
@@ -53,10 +55,13 @@ class PoseRefiner {
               const FacePoints& face);
 
   /// @param texture   learned, or null: the generic face then.
-  /// @param iterations  at most: a pose that has come to rest is left there.
+  /// @param iterations  at most: a pose that has come to rest is left there. Up to kRough of them
+  ///                  fit the mean face, more that of all adults' faces which fits best.
   /// @param reach_px  of the first step's contours; later ones look nearer.
   Refined Refine(const StereoView& view, const RigidTransform& X_CM, const FaceTexture* texture,
                  int iterations, int reach_px);
+
+  static constexpr int kRough = 3;
 
   /// What the generic model alone says of the head at @p X_CM: equations of a correction [dp; w] in
   /// the M frame, X_CM' = X_CM [Exp(w), dp].
@@ -72,17 +77,29 @@ class PoseRefiner {
                             Band band, const FaceTexture& texture);
 
  private:
+  /// What is asked of the generic face in a step.
+  enum class Looks { kMean, kMeanAndLikeness, kFitted };
+
+  /// @p hide: what does not look like the texture may be behind something.
+  Refined Refine(const StereoView& view, const RigidTransform& X_CM, const FaceTexture* texture,
+                 int iterations, int reach_px, bool hide);
   void AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
-                      double stereo_weight, PoseEquations* equations, Refined* refined);
+                      Looks looks, double stereo_weight, PoseEquations* equations,
+                      Refined* refined);
   void AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
-                  const FaceTexture& texture, PoseEquations* equations, Refined* refined);
+                  const FaceTexture& texture, bool hide, PoseEquations* equations,
+                  Refined* refined);
+  /// Both eyes see the same of @p plane at the points of @p face.
+  void AddAgreement(const StereoView& view, const std::array<EyePose, 2>& poses,
+                    const FacePoints& face, Band plane, double weight, PoseEquations* equations);
   void AddContours(const StereoView& view, const std::array<EyePose, 2>& poses, int reach_px,
                    double weight, PoseEquations* equations, ContourFit* fit);
 
   RefinerConfig config_;
   const FacePoints& face_;
+  LooksFit looks_;
   ContourTerm contours_;
-  std::array<FaceSamples, 2> samples_;
+  std::array<FaceSamples, 2> samples_, agreeing_;
 };
 
 }  // namespace visavis

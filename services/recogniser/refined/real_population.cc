@@ -1,6 +1,7 @@
 #include "services/recogniser/refined/real_population.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace visavis {
@@ -10,6 +11,10 @@ constexpr double kBlend = 0.3;          ///< how far children lie beyond their p
 constexpr double kLargestScale = 0.25;  ///< of a mutation, in ranges
 constexpr double kAngleSigma = 0.2;     ///< of shots' angles, in ranges
 constexpr double kDecades = 2.2;        ///< between the largest scale and the smallest
+
+constexpr int kNicheParents = 3;
+constexpr double kNarrowest = 0.15;  ///< of the first generation's spread, in a niche
+constexpr double kNicheSigma[6] = {0.012, 0.016, 0.030, 0.12, 0.20, 0.20};  ///< m, rad
 
 bool IsFitter(const Individual& a, const Individual& b) { return a.fitness > b.fitness; }
 
@@ -63,6 +68,24 @@ int RealPopulation::Evaluate(const FitnessFunction& fitness) {
   }
   Sort();
   return static_cast<int>(individuals_.size());
+}
+
+Individual RealPopulation::Evolve(const Vector6d& niche, int evaluations,
+                                  const ShotFitness& fitness) {
+  std::array<Individual, kNicheParents> best;
+  best.fill({niche, fitness(niche, -INFINITY), true});
+  for (int i = 1; i < evaluations; ++i) {
+    const double scale = std::pow(kNarrowest, static_cast<double>(i) / evaluations);
+    Vector6d phi = best[static_cast<std::size_t>(random_.Index(kNicheParents))].phi;
+    for (int k = 0; k < 6; ++k) phi[k] += scale * kNicheSigma[k] * random_.Normal();
+    phi = space_.Clamp(phi);
+    const Individual child{phi, fitness(phi, best.back().fitness), true};
+    const auto place = std::upper_bound(best.begin(), best.end(), child, IsFitter);
+    if (place == best.end()) continue;
+    std::move_backward(place, best.end() - 1, best.end());
+    *place = child;
+  }
+  return best[0];
 }
 
 void RealPopulation::Insert(const Vector6d& phi, double fitness) {

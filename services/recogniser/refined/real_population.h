@@ -54,6 +54,9 @@ class RealPopulation {
   using ShotFitness = std::function<double(const Vector6d& phi, double worth)>;
   const std::vector<Individual>& Shoot(int count, const ShotFitness& fitness);
   static constexpr std::size_t kMostShots = 120;
+  /// Evolution of a niche: children of the @p niche's few best, each generation nearer to them. The
+  /// niche is that of its best at the end.
+  Individual Evolve(const Vector6d& niche, int evaluations, const ShotFitness& fitness);
   /// One generation: the elite stays, children take the places of the rest. @return evaluations.
   int Reproduce(const FitnessFunction& fitness);
   /// Takes @p phi in, in the worst's place.

@@ -12,20 +12,14 @@
 
 namespace visavis {
 
-/// When the refined estimator believes a pose. A colour fitness or small residuals do not tell a
-/// face from a place that looks like one; the correlation with the features' pattern does.
+/// When the refined estimator believes a pose.
 struct EvidenceConfig {
   template <typename A>
   void Serialize(A* a) {
-    a->Visit("lock_ncc", &lock_ncc, InRange(-1.0, 1.0));
-    a->Visit("alone_ncc", &alone_ncc, InRange(-1.0, 1.0));
-    a->Visit("lock_stereo_ncc", &lock_stereo_ncc, InRange(-1.0, 1.0));
-    a->Visit("alone_stereo_ncc", &alone_stereo_ncc, InRange(-1.0, 1.0));
-    a->Visit("lock_outside", &lock_outside, InRange(-2.0, 2.0));
-    a->Visit("lock_inside", &lock_inside, InRange(-2.0, 2.0));
-    a->Visit("vague_ncc", &vague_ncc, InRange(-1.0, 1.0));
-    a->Visit("vague_outside", &vague_outside, InRange(-2.0, 2.0));
-    a->Visit("vague_inside", &vague_inside, InRange(-2.0, 2.0));
+    a->Visit("lock_log_odds", &lock_log_odds, InRange(-20.0, 20.0));
+    a->Visit("lock_likeness", &lock_likeness, InRange(-1.0, 1.0));
+    a->Visit("clear_log_odds", &clear_log_odds, InRange(-20.0, 20.0));
+    a->Visit("learned_likeness", &learned_likeness, InRange(-1.0, 1.0));
     a->Visit("enrolled_texture_ncc", &enrolled_texture_ncc, InRange(-1.0, 1.0));
     a->Visit("keep_texture_ncc", &keep_texture_ncc, InRange(-1.0, 1.0));
     a->Visit("keep_ncc", &keep_ncc, InRange(-1.0, 1.0));
@@ -34,17 +28,10 @@ struct EvidenceConfig {
     a->Visit("strange_frames", &strange_frames, InRange(1, 1000));
     a->Visit("one_eye_frames", &one_eye_frames, InRange(0, 1000000));
   }
-  double lock_ncc{0.2};          ///< generic pattern, before TRACKING
-  double lock_stereo_ncc{0.92};  ///< agreement of both eyes, before TRACKING
-  double lock_outside{-0.5};     ///< at most: how much the surroundings look like a head
-  double lock_inside{0.4};       ///< at least: how much the inside does
-  /// Where the wall is like skin or hair, colours tell less, and the rest must tell more.
-  double vague_ncc{0.45};      ///< generic pattern
-  double vague_outside{-0.3};  ///< at most
-  double vague_inside{0.5};    ///< at least
-  /// Where colours tell hardly anything, the features alone must.
-  double alone_ncc{0.5};             ///< generic pattern
-  double alone_stereo_ncc{0.96};     ///< agreement of both eyes
+  double lock_log_odds{4.5};         ///< of a face whoever it is, before TRACKING
+  double lock_likeness{0.2};         ///< of its features to a face's, at least, likewise
+  double clear_log_odds{7};          ///< beyond all doubt: no other place is looked at
+  double learned_likeness{0.25};     ///< of what was learned to a face, at least, not to forget it
   double enrolled_texture_ncc{0.8};  ///< an enrolled face, to be found
   double keep_texture_ncc{0.6};      ///< learned texture, while TRACKING
   double keep_ncc{0.1};              ///< generic pattern, while TRACKING
@@ -86,7 +73,8 @@ struct RefinedConfig {
     a->Visit("track_evaluations", &track_evaluations, InRange(0, 100000));
     a->Visit("search_shots", &search_shots, InRange(0, 100000));
     a->Visit("search_evaluations", &search_evaluations, InRange(100, 100000));
-    a->Visit("search_starts", &search_starts, InRange(1, 20));
+    a->Visit("search_niches", &search_niches, InRange(1, 20));
+    a->Visit("niche_evaluations", &niche_evaluations, InRange(1, 10000));
     a->Visit("iterations", &iterations, InRange(2, 50));
     a->Visit("search_iterations", &search_iterations, InRange(2, 50));
     a->Visit("learned_views", &learned_views, InRange(0, 100));
@@ -102,8 +90,9 @@ struct RefinedConfig {
   double budget_ms{100};
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
   int search_shots{1800};       ///< poses glanced at, in a frame without
-  int search_evaluations{200};  ///< of the fitness by the GA after them
-  int search_starts{4};         ///< best distinct individuals that are refined then
+  int search_evaluations{480};  ///< of the fitness by the GA after them
+  int search_niches{6};         ///< best of distinct places, that are evolved and refined then
+  int niche_evaluations{80};    ///< of the fitness in each of them
   int iterations{4};            ///< Gauss-Newton, in a frame with a track
   int search_iterations{8};     ///< Gauss-Newton, of each start
   int learned_views{20};        ///< of a head, that its shape and looks are learned from; 0: never

@@ -50,13 +50,15 @@ class RefinedEstimator final : public Estimator {
     Refined refined;
     MeshScore score;  ///< against the generic pattern
 
-    /// What decides between candidates: the fitness, how far both eyes agree on the surface, and
-    /// how well the contours lie.
-    double merit() const {
-      const double merit = score.total() + refined.stereo_ncc - 0.2 * refined.contour.rms_px();
-      return std::isfinite(merit) ? merit : -1e9;
-    }
+    /// Natural logarithm of the odds that it is a face where it is said to be, against a likeness
+    /// of one; a logistic regression.
+    double log_odds() const;
   };
+
+  /// What the last search refined, most likely first.
+  const std::vector<Candidate>& candidates() const { return candidates_; }
+  /// What the last frame chose, believed or not.
+  const Candidate& chosen() const { return candidate_; }
 
  private:
   void ForgetFace();
@@ -89,8 +91,16 @@ class RefinedEstimator final : public Estimator {
   double Contrast(const RigidTransform& X_CM) const;
   bool WasRejected(const Vector6d& phi) const;
   void RejectPlaces();
-  std::vector<RigidTransform> DistinctPlaces() const;
+  /// What the search maximises; a value below @p worth may be too low by less than what is
+  /// missing.
+  double Fitness(const MeshFitness& fitness, const Vector6d& phi, double worth);
+  /// The best of distinct places.
+  std::vector<RigidTransform> Places();
+  std::vector<Vector6d> Niches() const;
   void RefineStarts(const std::vector<RigidTransform>& places);
+  std::vector<Eigen::Matrix3d> BestTurns(const Eigen::Vector3d& p_CM);
+  void KeepPromising();
+  void SortPlausible();
   std::optional<Candidate> KnownAmongCandidates();
   Candidate BestVerified();
   Candidate TryTurned(const Candidate& candidate);
@@ -163,6 +173,7 @@ class RefinedEstimator final : public Estimator {
   std::optional<RigidTransform> X_CM_;        ///< of the last frame, carried to this one
   std::optional<RigidTransform> known_X_CM_;  ///< where the learned face was last seen, likewise
   Candidate candidate_;
+  std::vector<Individual> best_shots_;  ///< of this frame's search
   std::vector<Candidate> candidates_;
   std::vector<Eigen::Vector3d> rejected_;  ///< p_CM of places that proved to be no face
   Estimate estimate_;

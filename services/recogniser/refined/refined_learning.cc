@@ -8,7 +8,8 @@
 namespace visavis {
 namespace {
 
-constexpr double kClearNcc = 0.8;     ///< of the texture: a frame to learn a head from
+constexpr double kClearNcc = 0.8;     ///< of the texture: what was learned is seen in a frame
+constexpr double kViewNcc = 0.6;      ///< likewise: a frame to learn a head from
 constexpr double kFreeHidden = 0.25;  ///< share of the face, likewise
 constexpr double kLeastDetail = 300;  ///< [px] to a metre, likewise
 
@@ -60,7 +61,7 @@ void RefinedEstimator::LearnColors(const RigidTransform& X_CM) {
 void RefinedEstimator::Learn(const StereoFrame& frame) {
   if (frames_ % 2 == 0) LearnColors(candidate_.refined.X_CM);
   if (estimate_.status == TrackStatus::kTracking && !knows_enrolled() &&
-      candidate_.refined.texture_ncc > kClearNcc && candidate_.refined.hidden < kFreeHidden &&
+      candidate_.refined.texture_ncc > kViewNcc && candidate_.refined.hidden < kFreeHidden &&
       pair().detail(X_CM_->translation().z()) > kLeastDetail)
     learner_.Add(frame, candidate_.refined.X_CM, colors_);
   if (estimate_.status != TrackStatus::kTracking) return;
@@ -81,6 +82,10 @@ void RefinedEstimator::TakeLearned() {
   if (!texture_.learned() || knows_enrolled() || !BothEyes()) return;
   HeadLearner::Learned learned = learner_.Step();
   if (!learned.head) return;
+  if (learned.likeness < settings_.refined.evidence.learned_likeness) {
+    ForgetFace();
+    return;
+  }
   FaceTexture texture(learned.head->face);
   texture.Remember(*learned.head->head.face);
   const Refined seen = learned.head->refiner.Refine(

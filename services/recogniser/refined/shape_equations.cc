@@ -51,21 +51,37 @@ std::vector<float> ShapeEquations::Solve(const std::vector<float>& displaced,
     const double share = 1.0 / static_cast<double>(neighbours_[v].size());
     for (const int w : neighbours_[v]) laplacian.emplace_back(row, w, -share);
   }
-  SparseMatrix L(n, n), data(n, n), identity(n, n);
+  SparseMatrix L(n, n), data(n, n);
   L.setFromTriplets(laplacian.begin(), laplacian.end());
   data.setFromTriplets(entries_.begin(), entries_.end());
-  identity.setIdentity();
-  const SparseMatrix rough = L.transpose() * L;
-  const SparseMatrix P = rough / (prior.roughness_m * prior.roughness_m) +
-                         identity / (prior.displacement_m * prior.displacement_m);
+  const Eigen::VectorXd rough = prior.roughness_m.cwiseAbs2().cwiseInverse();
+  const SparseMatrix bending = L.transpose() * rough.asDiagonal() * L;
+  SparseMatrix P = bending;
+  P.diagonal() += prior.displacement_m.cwiseAbs2().cwiseInverse();
   const Eigen::VectorXd before =
       Eigen::Map<const Eigen::VectorXf>(displaced.data(), n).cast<double>();
+  // What is displaced, d, differs from the modes' share U c by what P weighs; c by 1.
   const Eigen::SimplicialLDLT<SparseMatrix> solver(data + P);
-  const Eigen::VectorXd movement = solver.solve(g_ - P * before);
+  Eigen::VectorXd d = solver.solve(g_ + data * before);
+  const Eigen::MatrixXd& U = prior.modes_m;
+  if (U.cols() > 0) {
+    const Eigen::MatrixXd PU = P * U, Y = solver.solve(PU);
+    Eigen::MatrixXd C = U.transpose() * PU - PU.transpose() * Y;
+    C.diagonal().array() += 1;
+    const Eigen::VectorXd c = C.ldlt().solve(PU.transpose() * d);
+    d += Y * c;
+  }
   std::vector<float> result(neighbours_.size());
-  std::transform(movement.begin(), movement.end(), result.begin(),
-                 [](double m) { return static_cast<float>(m); });
+  for (Eigen::Index i = 0; i < n; ++i)
+    result[static_cast<std::size_t>(i)] = static_cast<float>(d[i] - before[i]);
   return result;
+}
+
+ShapeEquations::Prior ShapeEquations::UniformPrior(double displacement_m,
+                                                   double roughness_m) const {
+  const auto n = static_cast<Eigen::Index>(neighbours_.size());
+  return {Eigen::VectorXd::Constant(n, displacement_m), Eigen::VectorXd::Constant(n, roughness_m),
+          Eigen::MatrixXd(n, 0)};
 }
 
 }  // namespace visavis

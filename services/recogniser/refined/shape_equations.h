@@ -20,11 +20,14 @@ class ShapeEquations {
   /// @p weight: inverse variance.
   void Add(const Eigen::Vector3f& direction, double slope, double residual, double weight);
 
-  /// How a shape may differ from the one it starts from; standard deviations.
+  /// How a shape may differ from the one it starts from: by a mixture of modes, each of standard
+  /// deviation 1, and by what these leave, by vertex.
   struct Prior {
-    double displacement_m;  ///< anywhere
-    double roughness_m;     ///< of a vertex from the mean of its neighbours
+    Eigen::VectorXd displacement_m;  ///< standard deviation
+    Eigen::VectorXd roughness_m;     ///< of a vertex from the mean of its neighbours
+    Eigen::MatrixXd modes_m;         ///< a column a mode; none: 0 columns
   };
+  Prior UniformPrior(double displacement_m, double roughness_m) const;
   /// The movement at each vertex, if the surface lies @p displaced (by vertex) from the one that
   /// the prior is about already.
   std::vector<float> Solve(const std::vector<float>& displaced, const Prior& prior) const;

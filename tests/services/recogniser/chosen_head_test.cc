@@ -7,6 +7,7 @@
 
 #include "common/config/config_error.h"
 #include "services/recogniser/head_file.h"
+#include "services/recogniser/refined/adult_head.h"
 #include "tests/support/head_obj.h"
 #include "tests/support/temporary_folder.h"
 
@@ -20,7 +21,7 @@ using ::testing::HasSubstr;
 
 TEST(ChosenHeadTest, TheDefaultIsTheGenericAdult) {
   const HeadGeometry head = ChosenHead({}, {});
-  const HeadSurface adult{HeadShape{}};
+  const HeadSurface& adult = TheAdult().surface;
   const Icosphere sphere(3);
   for (const Vector3f& d : sphere.vertices()) EXPECT_EQ(head.surface.Radius(d), adult.Radius(d));
   EXPECT_EQ(head.p_MR_m, Vector3d::Zero());
@@ -79,14 +80,14 @@ TEST(ChosenHeadTest, ASphereThatHardlyHoldsThePointBehindItsEyesIsRefusedByItsKe
   HeadChoice choice;
   choice.shape = "sphere";
   HeadModelConfig sizes;
-  for (const double radius_mm : {51.0, 54.0, 56.5}) {
+  for (const double radius_mm : {45.0, 49.0, 51.0}) {
     sizes.radius_mm = radius_mm;
     EXPECT_THAT([&] { ChosenHead(choice, sizes); },
                 ::testing::ThrowsMessage<FieldError>(
                     AllOf(HasSubstr("refined.head.shape"), HasSubstr("head.radius_mm"))))
         << radius_mm;
   }
-  sizes.radius_mm = 58;
+  sizes.radius_mm = 54;
   EXPECT_NO_THROW(ChosenHead(choice, sizes));
 }
 
@@ -105,7 +106,7 @@ TEST_F(HeadOfFileTest, PosesAreToldFromTheFilesOrigin) {
   how.units_per_m = 100;
   how.shift_m = {0.1, 0.2, 0.3};
   HeadChoice choice;
-  choice.file = WriteHeadObj(folder_.path(), HeadSurface{HeadShape{}}, how);
+  choice.file = WriteHeadObj(folder_.path(), TheAdult().surface, how);
   choice.scale = 0.01;
   EXPECT_EQ(ChosenHead(choice, {}).p_MR_m, Vector3d::Zero());
   choice.origin_m = {0.1, -0.21, -0.3};  // y up, z to the viewer
@@ -117,7 +118,7 @@ TEST_F(HeadOfFileTest, AYamlFileIsAHeadOfRadii) {
   shape.mouth_y = 0.08f;
   HeadChoice choice;
   choice.file = folder_ / "head.yaml";
-  SaveHeadFile(choice.file, {HeadSurface(shape), {0, 0, 0.01}});
+  SaveHeadFile(choice.file, {HeadSurface(shape, TableOf(TheAdult().surface, 4)), {0, 0, 0.01}});
   const HeadGeometry head = ChosenHead(choice, {});
   EXPECT_NEAR(head.surface.shape().mouth_y, 0.08f, 1e-6f);
   EXPECT_NEAR(head.p_MR_m.z(), 0.01, 1e-9);
@@ -137,15 +138,15 @@ TEST_F(HeadOfFileTest, WhatIsNoHeadIsRefusedInOneLineThatNamesKeyFileAndRule) {
   ExpectRefused(choice, "line 2: radii_mm: 2 numbers: must be 162, 642");
   HeadObj how;
   how.leave_out = 5;
-  choice.file = WriteHeadObj(folder_.path(), HeadSurface{HeadShape{}}, how);
+  choice.file = WriteHeadObj(folder_.path(), TheAdult().surface, how);
   ExpectRefused(choice, "is not closed");
   how = {};
   how.units_per_m = 1000;
-  WriteHeadObj(folder_.path(), HeadSurface{HeadShape{}}, how);
+  WriteHeadObj(folder_.path(), TheAdult().surface, how);
   ExpectRefused(choice, "m high: must be 0.12 to 0.45 m");
   how = {};
   how.material = [](const Vector3f&) { return std::string("Material.001"); };
-  WriteHeadObj(folder_.path(), HeadSurface{HeadShape{}}, how);
+  WriteHeadObj(folder_.path(), TheAdult().surface, how);
   ExpectRefused(choice, "material 'Material.001': must contain skin");
 }
 

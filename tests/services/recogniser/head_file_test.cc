@@ -8,6 +8,7 @@
 
 #include "common/config/config_error.h"
 #include "common/core/random.h"
+#include "services/recogniser/refined/adult_head.h"
 #include "tests/support/config_refusal.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/temporary_folder.h"
@@ -38,7 +39,8 @@ TEST_F(HeadFileTest, AHeadThatWasWrittenIsReadBackToAThousandthOfAMillimetre) {
   HeadShape shape;
   shape.eye_y = 0.015f;
   shape.mouth_y = 0.079f;
-  const HeadGeometry head{HeadSurface(shape), {0.001, -0.02, 0.003}};
+  const HeadGeometry head{HeadSurface(shape, TableOf(TheAdult().surface, 4)),
+                          {0.001, -0.02, 0.003}};
   SaveHeadFile(name_, head);
   const HeadGeometry read = LoadHeadFile(name_);
   EXPECT_NEAR(read.surface.shape().eye_y, 0.015f, 1e-6f);
@@ -55,8 +57,10 @@ TEST_F(HeadFileTest, AHeadThatWasWrittenIsReadBackToAThousandthOfAMillimetre) {
 TEST_F(HeadFileTest, RadiiAloneAreEnough) {
   const HeadGeometry head = LoadHeadFile(Write("radii_mm: " + Numbers(642, "95") + "\n"));
   EXPECT_NEAR(head.surface.Radius({0, 0, 1}), 0.095f, 1e-6f);
-  EXPECT_NEAR(head.surface.HairSide({0, 0.1f, 0}), HeadSurface(HeadShape{}).HairSide({0, 0.1f, 0}),
-              1e-4f);  // the plane of HeadShape, its tilt rounded to a degree
+  EXPECT_NEAR(
+      head.surface.HairSide({0, 0.1f, 0}),
+      HeadSurface(HeadShape{}, {std::vector<float>(642, 0.095f), {}, {}}).HairSide({0, 0.1f, 0}),
+      1e-4f);  // the plane of HeadShape, its tilt rounded to a degree
 }
 
 TEST_F(HeadFileTest, WhatIsNoHeadIsRefusedWithFileKeyValueAndRule) {
@@ -90,7 +94,7 @@ TEST_F(HeadFileTest, AFolderThatIsNotThereIsNamedWhenWriting) {
 }
 
 TEST_F(HeadFileTest, AnEnrolledFaceIsReadBackToAThousandth) {
-  const HeadSurface adult{HeadShape{}};
+  const HeadSurface& adult = TheAdult().surface;
   HeadGeometry head{HeadSurface(HeadShape{}, TableOf(adult, 4)), {0, 0, 0}};
   LearnedFace face;
   Random random(4);
@@ -142,7 +146,7 @@ TEST_F(HeadFileTest, WhatCouldNotBeReadBackIsNotWritten) {
   HeadShape shape;
   shape.eye_x = 0.07f;
   bad = good;
-  bad.surface = HeadSurface(shape);
+  bad.surface = HeadSurface(shape, TableOf(TheAdult().surface, 4));
   expect_refusal(bad, "eye_x_mm", "10 to 60 mm");
 }
 

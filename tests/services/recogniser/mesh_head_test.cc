@@ -63,7 +63,9 @@ TEST_F(MeshHeadTest, HairIsWhereTheMeshHasIt) {
   const HeadSurface& adult = SharedAdultHead().surface;
   const Icosphere sphere(4);
   for (const Vector3f& d : sphere.vertices()) {
-    const float side = adult.HairSide(adult.Radius(d) * d);
+    const Vector3f p = adult.Radius(d) * d;
+    const float side = adult.HairSide(p);
+    if (p.y() > 0.09f) continue;  // the neck ends somewhere
     if (std::abs(side) > 0.008f) {
       EXPECT_EQ(head.surface.HairSide(d) > 0, side > 0) << d.transpose();
     }

@@ -171,6 +171,7 @@ TEST(ServicePairsTest, ARigFileServesUntilARigComes) {
 TEST(ServicePairsTest, JpegPairsAreTrackedAsRawOnesAre) {
   const StereoRig rig = TestRig();
   RecogniserConfig config;
+  config.estimator = "published";
   config.head = TestHead();
   config.start.phi_mm_deg = {30, -20, 1000, 4, -5, 3};
   config.published.generations_per_frame = 5;

@@ -217,7 +217,8 @@ TEST_F(AppearanceTest, TooFewPointsAddNothing) {
   AddPattern(Face(), truth, X_CM_.linear().cast<float>(), truth.value, few, 0.45f, 1, &equations);
   EXPECT_EQ(equations.H, Matrix6d::Zero());
   const FaceSamples none(Face().size());
-  EXPECT_EQ(AddStereo(Face(), truth, none, X_CM_.linear().cast<float>(), 0.35f, 1, &equations), 0);
+  AddStereo(Face(), truth, none, X_CM_.linear().cast<float>(), 0.35f, 1, &equations);
+  EXPECT_EQ(StereoCorrelation(truth, none, Face().size()), 0);
   EXPECT_EQ(equations.H, Matrix6d::Zero());
 }
 
@@ -242,9 +243,7 @@ TEST_F(AppearanceTest, TheSurroundingsDoNotPullTheDepth) {
 TEST_F(AppearanceTest, EyesThatAgreeCorrelateAndAWrongDepthCorrelatesLess) {
   const auto correlation = [&](double z) {
     const RigidTransform X = Moved(X_CM_, z * Vector6d::Unit(2));
-    PoseEquations ignored;
-    return AddStereo(Face(), Sample(0, X), Sample(1, X), X.linear().cast<float>(), 0.35f, 1,
-                     &ignored);
+    return StereoCorrelation(Sample(0, X), Sample(1, X), Face().size());
   };
   EXPECT_GT(correlation(0), 0.8);
   EXPECT_LT(correlation(0.03), correlation(0) - 0.3);

@@ -151,6 +151,29 @@ TEST(BandImagesTest, ASymmetricBlobPeaksAtItsOwnCentre) {
   }
 }
 
+TEST(BandImagesTest, BrightnessIsThatOfRedButForItsFinestDetails) {
+  // What changes along x in red alone.
+  const auto level = [](double x) { return 120 + 60 * std::sin(2 * M_PI * x / 40); };
+  OwnedImage rgb = FlatImage(kWidth, kHeight, 0, 77, 200);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x)
+      rgb.bytes[static_cast<std::size_t>(3 * (y * kWidth + x))] =
+          static_cast<std::uint8_t>(std::lround(level(x)));
+  }
+  const OwnedImage gray = Picture([&](double x, double /*y*/) { return level(x); });
+  for (const OwnedImage* image : std::array<const OwnedImage*, 2>{&rgb, &gray}) {
+    const BandImages bands = BandsOf(image->view);
+    for (float u = 40; u < 120; u += 3.7f) {
+      const float value = ValueAt(bands, kBrightness, u, 60);
+      EXPECT_NEAR(static_cast<double>(value), level(static_cast<double>(u)), 6) << u;
+    }
+  }
+  const OwnedImage fine = Picture([](double x, double y) {
+    return static_cast<int>(x / 2 + std::floor(y / 2)) % 2 == 0 ? 40 : 200;
+  });
+  EXPECT_NEAR(ValueAt(BandsOf(fine.view), kBrightness, 80, 60), 120, 5);
+}
+
 TEST(BandImagesTest, ABoxGivesWhatTheWholePictureGivesAwayFromItsBorder) {
   Random random(1);
   const OwnedImage noise = NoiseImage(kWidth, kHeight, &random);

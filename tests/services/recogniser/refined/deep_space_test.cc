@@ -15,18 +15,6 @@ double FrozenTime() { return 0; }
 
 Vector6d PlaceAt(double z_mm) { return PhiOf(20, -20, z_mm, 4, -8, 5); }
 
-/// The featured head with another grain of its skin: somebody else.
-Color StrangerHead(const Eigen::Vector3f& p_M) {
-  Color color = FeaturedHead(p_M);
-  if (color[0] < kSceneSkin[0] / 2 + 20) return color;
-  const float factor = 0.75f + 0.25f * Grain(p_M + Eigen::Vector3f(0.05f, 0.02f, 0));
-  for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    color[i] = static_cast<std::uint8_t>(factor * static_cast<float>(kSceneSkin[i]));
-  }
-  return color;
-}
-
 class DeepSpaceTest : public ::testing::Test {
  protected:
   DeepSpaceTest() { timer_.Restart(); }

@@ -40,8 +40,9 @@ Head AdultIn(const RigidTransform& X_MN) {
     head.face.points.push_back(X_back * p);
     head.face.normals.push_back(X_back.linear() * face.normals[i]);
     const float grain = Grain(Vector3f(std::abs(p.x()), p.y(), p.z()));
+    const AdultLooks::Place looks = TheAdult().looks.At(p.x(), p.y());
     for (const Band band : {kFineBand, kCoarseBand})
-      head.face.value[band].push_back(20 * face.generic[band][i] + 3 * grain);
+      head.face.value[band].push_back(10 * looks.mean[band] + grain);
   }
   return head;
 }
@@ -53,7 +54,7 @@ RigidTransform Turned(double roll_deg, double yaw_deg, double pitch_deg) {
 
 class FaceFrameTest : public ::testing::TestWithParam<Vector3d> {
  protected:
-  const FaceFrame frame_{SharedAdultHead().surface};
+  const FaceFrame frame_{TheAdult()};
 };
 INSTANTIATE_TEST_SUITE_P(RollYawPitch, FaceFrameTest,
                          ::testing::Values(Vector3d(0, 0, 0), Vector3d(0, 5, 0), Vector3d(-4, 0, 0),
@@ -62,21 +63,40 @@ INSTANTIATE_TEST_SUITE_P(RollYawPitch, FaceFrameTest,
 TEST_P(FaceFrameTest, IsFoundWhereASymmetricFaceIsToldInATurnedFrame) {
   const RigidTransform X_MN = Turned(GetParam()[0], GetParam()[1], GetParam()[2]);
   const Head head = AdultIn(X_MN);
-  const RigidTransform found = frame_.Find(head.face, head.surface, Vector3d::Zero());
+  const auto [found, likeness] = frame_.Find(head.face, head.surface);
   const RigidTransform off = X_MN.inverse() * found;
   const Vector3d turned_deg = LogRotation(off.linear()) * (180 / M_PI);
   EXPECT_LT(std::abs(turned_deg.x()), 0.6);
   EXPECT_LT(std::abs(turned_deg.y()), 0.5);
   EXPECT_LT(std::abs(turned_deg.z()), 0.3);
-  EXPECT_LT(off.translation().norm(), 0.001);
+  EXPECT_LT(off.translation().norm(), 0.0015);
+  EXPECT_GT(likeness, 0.6);
+}
+
+TEST_F(FaceFrameTest, IsFoundOnAFaceToldFromElsewhere) {
+  for (const double up_m : {-0.02, 0.02}) {
+    const RigidTransform X_MN =
+        MakeTransform(Turned(0, 0, up_m > 0 ? 8 : -8).linear(), Vector3d(0, up_m, 0));
+    const Head head = AdultIn(X_MN);
+    const RigidTransform off = X_MN.inverse() * frame_.Find(head.face, head.surface).X_MN;
+    EXPECT_LT(off.translation().norm(), 0.002) << up_m;
+    EXPECT_LT(LogRotation(off.linear()).norm() * (180 / M_PI), 1) << up_m;
+  }
+}
+
+TEST_F(FaceFrameTest, WhatIsNoFaceIsNotLikeOne) {
+  Head head = AdultIn(RigidTransform::Identity());
+  Random random(3);
+  for (std::size_t i = 0; i < head.face.points.size(); ++i)
+    head.face.value[kFineBand][i] = static_cast<float>(20 * random.Normal());
+  EXPECT_LT(frame_.Find(head.face, head.surface).likeness, 0.1);
 }
 
 TEST_F(FaceFrameTest, TheFrameIsLeftWhereTheFaceTellsNothing) {
   const Head head = AdultIn(RigidTransform::Identity());
-  const Vector3d p_NM(0.001, 0.002, 0.003);
-  const RigidTransform found = frame_.Find({}, head.surface, p_NM);
-  EXPECT_EQ(found.linear(), Eigen::Matrix3d::Identity());
-  EXPECT_EQ(found.translation(), -p_NM);
+  const auto [found, likeness] = frame_.Find({}, head.surface);
+  EXPECT_EQ(found.matrix(), Eigen::Matrix4d::Identity());
+  EXPECT_EQ(likeness, 0);
 }
 
 TEST_F(FaceFrameTest, HalfAFaceStillTellsItsFrame) {
@@ -90,7 +110,7 @@ TEST_F(FaceFrameTest, HalfAFaceStillTellsItsFrame) {
     for (const Band band : {kFineBand, kCoarseBand})
       half.value[band].push_back(head.face.value[band][i]);
   }
-  const RigidTransform found = frame_.Find(half, head.surface, Vector3d::Zero());
+  const RigidTransform found = frame_.Find(half, head.surface).X_MN;
   EXPECT_LT(LogRotation((X_MN.inverse() * found).linear()).norm() * (180 / M_PI), 1.0);
 }
 

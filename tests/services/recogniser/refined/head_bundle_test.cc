@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/core/random.h"
+#include "services/recogniser/refined/adult_head.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/stereo_scene.h"
 
@@ -16,16 +17,13 @@ using Eigen::Vector3d;
 constexpr double kDistance_m = 1;
 constexpr int kRounds = 8;
 
-/// The generic adult with other cheeks, forehead and chin: up to 4 mm off the painted head.
+/// Another adult: up to 6 mm off the painted head.
 HeadGeometry OtherHead() {
-  const HeadSurface& adult = SharedAdultHead().surface;
-  HeadTable table = TableOf(adult, 4);
-  const Icosphere sphere(4);
-  const auto& directions = sphere.vertices();
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Eigen::Vector3f& d = directions[i];
-    table.radii_m[i] += 0.004f * std::sin(4 * d.y()) * std::cos(3 * d.x());
-  }
+  HeadTable table = TableOf(SharedAdultHead().surface, 4);
+  const Eigen::MatrixXd& modes = TheAdult().shape_modes_m;
+  const Eigen::VectorXd off = 1.5 * (modes.col(1) - modes.col(2) + modes.col(4) - modes.col(6));
+  for (std::size_t i = 0; i < table.radii_m.size(); ++i)
+    table.radii_m[i] += static_cast<float>(off[static_cast<Eigen::Index>(i)]);
   return {HeadSurface(HeadShape{}, table), {0, 0, 0}};
 }
 
@@ -130,7 +128,7 @@ TEST_F(HeadBundleTest, PosesShapeAndTextureComeToAgree) {
   EXPECT_LT(after.angle_rad, 0.2 * before.angle_rad);
   EXPECT_GT(last.texture_ncc, first.texture_ncc + 0.03);
   EXPECT_GT(last.stereo_ncc, first.stereo_ncc);
-  EXPECT_LT(last.contour_px, 0.6 * first.contour_px);
+  EXPECT_LT(last.contour_px, 0.8 * first.contour_px);
   EXPECT_LT(last.moved_m, 0.2 * first.moved_m);
   EXPECT_LT(ShapeError(bundle.Enrolled(), after.offset),
             0.6 * ShapeError(OtherHead(), after.offset));

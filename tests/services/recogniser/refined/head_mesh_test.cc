@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "services/recogniser/refined/head_geometry.h"
 #include "tests/support/mesh_scene.h"
 
 namespace visavis {
@@ -63,14 +64,14 @@ TEST(HeadMeshTest, IsClosedEachEdgeLiesInTwoTrianglesOnceInEachDirection) {
 }
 
 TEST(HeadMeshTest, VerticesLieOnTheSurface) {
-  const AdultHead& head = SharedAdultHead();
+  const SharedHead& head = SharedAdultHead();
   for (const Vector3f& v : head.mesh.vertices) {
     EXPECT_NEAR(v.norm(), head.surface.Radius(v.normalized()), 1e-6f);
   }
 }
 
 TEST(HeadMeshTest, NormalsAreUnitOutwardAndThoseOfTheSurface) {
-  const AdultHead& head = SharedAdultHead();
+  const SharedHead& head = SharedAdultHead();
   int askew = 0;
   for (std::size_t i = 0; i < head.mesh.vertices.size(); ++i) {
     const Vector3f &p = head.mesh.vertices[i], &n = head.mesh.normals[i];
@@ -92,7 +93,7 @@ TEST(HeadMeshTest, TrianglesEncloseTheVolumeOfAHead) {
 }
 
 TEST(HeadMeshTest, PartsFollowThePlaneOfTheHair) {
-  const AdultHead& head = SharedAdultHead();
+  const SharedHead& head = SharedAdultHead();
   int features = 0;
   for (std::size_t i = 0; i < head.mesh.vertices.size(); ++i) {
     const bool hair = head.surface.HairSide(head.mesh.vertices[i]) > 0;
@@ -135,8 +136,26 @@ TEST(HeadMeshTest, ContoursDoNotCountAtEarsNapeAndBelowTheJaw) {
   EXPECT_EQ(weight({0, -0.09f, 0}), 1) << "crown";
 }
 
+TEST(HeadMeshTest, ContoursCountTheLessTheLessTheyAreKnown) {
+  HeadTable table = TableOf(SharedAdultHead().surface, 3);
+  const auto weight = [&](const Vector3f& towards) {
+    const HeadSurface surface(HeadShape{}, table);
+    const HeadMesh mesh = MeshOf(surface, 3);
+    return mesh.contour_weights[Nearest(mesh, surface.Onto(towards))];
+  };
+  const Vector3f cheek(0.06f, 0.04f, -0.06f), crown(0, -0.09f, 0);
+  table.sigma_m.clear();
+  EXPECT_EQ(weight(cheek), 1);
+  EXPECT_EQ(weight(crown), 1);
+  table.sigma_m.assign(table.radii_m.size(), 0.003f);
+  EXPECT_NEAR(weight(cheek), 0.8f, 1e-5f);
+  EXPECT_LT(weight(crown), 0.5f);  // hair may be done in any way
+  table.sigma_m.assign(table.radii_m.size(), 0.02f);
+  EXPECT_LT(weight(cheek), 0.25f);
+}
+
 TEST(HeadMeshTest, NoColourIsTakenFromFeaturesNeckAndHairline) {
-  const AdultHead& head = SharedAdultHead();
+  const SharedHead& head = SharedAdultHead();
   int skin = 0, hair = 0;
   for (std::size_t i = 0; i < head.mesh.vertices.size(); ++i) {
     const Vector3f& p = head.mesh.vertices[i];

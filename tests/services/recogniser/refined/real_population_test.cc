@@ -155,6 +155,43 @@ TEST(RealPopulationTest, ReproduceNeverLosesTheElite) {
   }
 }
 
+TEST(RealPopulationTest, ANicheEvolvesTowardsItsBestPlace) {
+  int won = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RealPopulation population = APopulation(seed);
+    const Vector6d start = kGoal + PhiOf(15, -15, 25, 6, 6, -6);
+    int evaluations = 0;
+    const Individual best = population.Evolve(start, 80, [&](const Vector6d& phi, double) {
+      EXPECT_TRUE(TestSpace().Contains(phi));
+      ++evaluations;
+      return Sphere(phi);
+    });
+    EXPECT_EQ(evaluations, 80);
+    EXPECT_EQ(best.fitness, Sphere(best.phi));
+    EXPECT_GE(best.fitness, Sphere(start));
+    won += best.fitness > 0.25 * Sphere(start);
+  }
+  EXPECT_GE(won, 18);
+}
+
+TEST(RealPopulationTest, ANicheIsToldWhatAChildMustExceed) {
+  RealPopulation population = APopulation();
+  std::vector<double> best;  // three
+  population.Evolve(kGoal, 60, [&](const Vector6d& phi, double worth) {
+    const double fitness = Sphere(phi);
+    if (best.empty()) {
+      EXPECT_EQ(worth, -INFINITY);
+      best.assign(3, fitness);
+    } else {
+      EXPECT_EQ(worth, best.back());
+      best.push_back(fitness);
+      std::sort(best.rbegin(), best.rend());
+      best.pop_back();
+    }
+    return fitness;
+  });
+}
+
 TEST(RealPopulationTest, ShootCoversThePositionsEvenly) {
   RealPopulation population = APopulation();
   population.Evaluate([](const Vector6d&) { return 0.0; });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/recogniser/recogniser_config.h"
+#include "services/recogniser/refined/adult_head.h"
 #include "tests/support/malloc_counter.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/stereo_scene.h"
@@ -267,7 +268,7 @@ TEST_F(RefinedEstimatorTest, AStartIsTheHeadsOwnOriginsToo) {
 }
 
 TEST_F(RefinedEstimatorTest, ATableOfTheAdultTracksAsTheAdultDoes) {
-  const HeadSurface adult{HeadShape{}};
+  const HeadSurface& adult = TheAdult().surface;
   const HeadGeometry head{HeadSurface(HeadShape{}, TableOf(adult, 5)), {0, 0, 0}};
   RefinedEstimator tabulated(RecogniserConfig{}.RefinedSettings(), head, TestRig());
   SeeHeadAt(kPlace);

@@ -29,7 +29,7 @@ class RefinedTwinsTest : public ::testing::Test {
   }
 
   const Vector6d kTruth = PhiOf(20, -10, 1000, 4, -5, 3);
-  const AdultHead& head_ = SharedAdultHead();
+  const SharedHead& head_ = SharedAdultHead();
   MeshScene scene_;
   const StereoView& view_;
   Random random_;
@@ -52,7 +52,7 @@ TEST_F(RefinedTwinsTest, TheFitnessEqualsItsTwin) {
 
 TEST_F(RefinedTwinsTest, TheBandsEqualTheirTwins) {
   const NaiveBands naive(scene_.picture(0));
-  for (const Band band : {kFineBand, kCoarseBand}) {
+  for (const Band band : {kFineBand, kCoarseBand, kBrightness}) {
     const BandView view = view_[0].bands->view(band);
     ASSERT_EQ(naive.bands[band].size(), static_cast<std::size_t>(view.width * view.height));
     for (std::size_t i = 0; i < naive.bands[band].size(); ++i) {
@@ -98,6 +98,7 @@ TEST_F(RefinedTwinsTest, EverySimdTargetGivesTheSameBits) {
       EXPECT_EQ(again.information, refined.information) << target;
       EXPECT_EQ(again.contour.sum_square, refined.contour.sum_square) << target;
       EXPECT_EQ(again.stereo_ncc, refined.stereo_ncc) << target;
+      EXPECT_EQ(again.likeness, refined.likeness) << target;
     }
   }
 }
