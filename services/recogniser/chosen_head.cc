@@ -78,6 +78,7 @@ HeadGeometry FileHead(const HeadChoice& choice) {
   options.y_up = choice.y_up;
   Vector3d p_M_of_mesh;
   HeadGeometry head = HeadFromMesh(LoadLabelledMesh(choice.file, options), &p_M_of_mesh);
+  head.p_MR_m = AdultOrigin();
   if (choice.origin_m.empty()) return head;
   const Vector3d origin(choice.origin_m[0], choice.origin_m[1], choice.origin_m[2]);
   const Vector3d axes = choice.y_up ? Vector3d(1, -1, -1) : Vector3d::Ones();
@@ -94,7 +95,7 @@ HeadGeometry ChosenHead(const HeadChoice& choice, const HeadModelConfig& sizes) 
                      "must be three numbers within +-1000 m, or none");
   }
   if (choice.file.empty()) {
-    if (choice.shape == "adult") return {};
+    if (choice.shape == "adult") return {TheAdult().surface, AdultOrigin(), std::nullopt};
     const bool is_sphere = choice.shape == "sphere";
     return EllipsoidHead(
         is_sphere ? Vector3d::Constant(sizes.radius_mm)

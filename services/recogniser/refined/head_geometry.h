@@ -28,6 +28,10 @@ inline Eigen::Vector3d TowardsCamera(const RigidTransform& X_CM) {
 /// Between the pupils of the generic adult, on its surface: where every head has them in M [m].
 Eigen::Vector3d AdultEyes();
 
+/// The centre of an adult's cranium in M [m], in the mean of the heads that the generic one was
+/// learned from: where poses are told from unless the head says otherwise.
+Eigen::Vector3d AdultOrigin();
+
 /// @p surface by direction, for the level of so many vertices (see HeadTable); with the border of
 /// its hair.
 HeadTable TableOf(const HeadSurface& surface, int level);

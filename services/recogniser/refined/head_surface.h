@@ -10,7 +10,7 @@ namespace visavis {
 
 /// Where a head has its features, and the plane C_h between hair and skin, in the M frame (x to the
 /// subject's left as the camera sees right, y down, z to the rear), m. Means of adult
-/// anthropometry; the origin lies halfway between vertex and chin.
+/// anthropometry; the origin lies halfway between the mean vertex and chin.
 struct HeadShape {
   float hair_tilt_rad{0.5935f};        ///< of the plane, back from horizontal
   float hair_offset{-0.029f};          ///< of that plane along its normal

@@ -90,9 +90,9 @@ struct RefinedConfig {
   double budget_ms{100};
   int track_evaluations{60};    ///< of the fitness, in a frame with a track
   int search_shots{1800};       ///< poses glanced at, in a frame without
-  int search_evaluations{480};  ///< of the fitness by the GA after them
+  int search_evaluations{100};  ///< of the fitness by the GA after them
   int search_niches{6};         ///< best of distinct places, that are evolved and refined then
-  int niche_evaluations{80};    ///< of the fitness in each of them
+  int niche_evaluations{60};    ///< of the fitness in each of them
   int iterations{4};            ///< Gauss-Newton, in a frame with a track
   int search_iterations{8};     ///< Gauss-Newton, of each start
   int learned_views{20};        ///< of a head, that its shape and looks are learned from; 0: never

@@ -24,7 +24,7 @@ TEST(ChosenHeadTest, TheDefaultIsTheGenericAdult) {
   const HeadSurface& adult = TheAdult().surface;
   const Icosphere sphere(3);
   for (const Vector3f& d : sphere.vertices()) EXPECT_EQ(head.surface.Radius(d), adult.Radius(d));
-  EXPECT_EQ(head.p_MR_m, Vector3d::Zero());
+  EXPECT_EQ(head.p_MR_m, AdultOrigin());
 }
 
 TEST(ChosenHeadTest, AnEllipsoidIsOneAboutTheOriginThatPosesAreToldFrom) {
@@ -108,7 +108,7 @@ TEST_F(HeadOfFileTest, PosesAreToldFromTheFilesOrigin) {
   HeadChoice choice;
   choice.file = WriteHeadObj(folder_.path(), TheAdult().surface, how);
   choice.scale = 0.01;
-  EXPECT_EQ(ChosenHead(choice, {}).p_MR_m, Vector3d::Zero());
+  EXPECT_EQ(ChosenHead(choice, {}).p_MR_m, AdultOrigin());
   choice.origin_m = {0.1, -0.21, -0.3};  // y up, z to the viewer
   EXPECT_LT((ChosenHead(choice, {}).p_MR_m - Vector3d(0, 0.01, 0)).norm(), 0.003);
 }

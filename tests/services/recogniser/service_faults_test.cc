@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/recogniser/refined/head_geometry.h"
 #include "tests/services/recogniser/service_bench.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/stereo_scene.h"
@@ -40,8 +41,8 @@ class ServiceFaultsTest : public ::testing::Test {
     return bench_.Poses().back();
   }
   static double ErrorMm(const head_pose_t& pose, const Vector6d& phi) {
-    return 1e3 *
-           (Eigen::Vector3d(pose.p_CM_m[0], pose.p_CM_m[1], pose.p_CM_m[2]) - phi.head<3>()).norm();
+    const Eigen::Vector3d p_CR(pose.p_CM_m[0], pose.p_CM_m[1], pose.p_CM_m[2]);
+    return 1e3 * (p_CR - TransformFromPhi(phi) * AdultOrigin()).norm();
   }
 
   Random random_{1};
