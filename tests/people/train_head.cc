@@ -6,6 +6,7 @@
 // count alike, however many there are of each. Prints how far the model is from the one that the
 // program was built with. scripts/train-head makes the list.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>

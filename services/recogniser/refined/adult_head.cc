@@ -1,8 +1,7 @@
 #include "services/recogniser/refined/adult_head.h"
 
 #include <cmath>
-#include <sstream>
-#include <string>
+#include <cstdlib>
 
 #include "common/core/check.h"
 
@@ -62,6 +61,7 @@ AdultHead Read() {
   Eigen::MatrixXd shape_modes = Eigen::MatrixXd::Zero(n, modes);
   for (int i = 0; i < in_region; ++i) {
     const int vertex = in.Count();
+    VISAVIS_THROW_UNLESS(vertex >= 0 && vertex < n, vertex);
     for (int k = 0; k < modes; ++k) shape_modes(vertex, k) = 1e-5 * in.Number();
   }
   return {HeadSurface(HeadShape{}, table), shape_modes, looks};

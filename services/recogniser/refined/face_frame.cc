@@ -153,7 +153,7 @@ double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, doubl
   for (int round = 0; round < 3; ++round) {
     const Eigen::VectorXd pattern = mean.head(n) + modes.topRows(n) * a;
     const double x = w.dot(pattern) / sum;
-    const double var_x = (w.array() * (pattern.array() - x).square()).sum();
+    const double var_x = std::max((w.array() * (pattern.array() - x).square()).sum(), 1e-9);
     const double cov = (w.array() * (pattern.array() - x) * (v.array() - y)).sum();
     const double gain =
         std::max(cov / var_x, static_cast<double>(kLeastGain) * std::sqrt(var_y / var_x));
@@ -276,9 +276,10 @@ FaceFrame::Found FaceFrame::Find(const LearnedFace& face, const HeadSurface& sur
   const Start& best =
       *std::min_element(starts.begin(), starts.end(),
                         [](const Start& a, const Start& b) { return a.badness < b.badness; });
-  double ignored = 0;
+  double badness = 0;
   Found found;
-  found.X_MN = Refine(&asked, best.X_MN, kMostSteps, &ignored);
+  found.X_MN = Refine(&asked, best.X_MN, kMostSteps, &badness);
+  if (!(badness <= best.badness)) found.X_MN = best.X_MN;
   misfits.setZero(static_cast<Eigen::Index>(value.size()) + AdultLooks::kModes);
   found.likeness = AddLooks(asked, found.X_MN, misfits.data());
   return found;

@@ -31,6 +31,7 @@ PixelBox Common(const PixelBox& a, const PixelBox& b) {
 ShapeEquations::Prior PriorOf(const ShapeEquations& shape) {
   ShapeEquations::Prior prior = shape.UniformPrior(kOwn_m, kOwnRoughness_m);
   prior.modes_m = TheAdult().shape_modes_m;
+  VISAVIS_THROW_UNLESS(prior.modes_m.rows() == prior.displacement_m.size(), prior.modes_m.rows());
   for (Eigen::Index i = 0; i < prior.modes_m.rows(); ++i) {
     if (!prior.modes_m.row(i).isZero()) continue;
     prior.displacement_m[i] = kOutside_m;

@@ -29,7 +29,7 @@ inline Eigen::Vector3d TowardsCamera(const RigidTransform& X_CM) {
 Eigen::Vector3d AdultEyes();
 
 /// The centre of an adult's cranium in M [m], in the mean of the heads that the generic one was
-/// learned from: where poses are told from unless the head says otherwise.
+/// learned from: the R of heads that name no origin of their own (ChosenHead).
 Eigen::Vector3d AdultOrigin();
 
 /// @p surface by direction, for the level of so many vertices (see HeadTable); with the border of

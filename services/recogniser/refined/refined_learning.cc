@@ -82,7 +82,7 @@ void RefinedEstimator::TakeLearned() {
   if (!texture_.learned() || knows_enrolled() || !BothEyes()) return;
   HeadLearner::Learned learned = learner_.Step();
   if (!learned.head) return;
-  if (learned.likeness < settings_.refined.evidence.learned_likeness) {
+  if (!(learned.likeness >= settings_.refined.evidence.learned_likeness)) {
     ForgetFace();
     return;
   }

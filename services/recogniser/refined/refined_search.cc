@@ -50,8 +50,8 @@ std::vector<RigidTransform> RefinedEstimator::Places() {
         return head().shot_fitness.FoundIfWorth(view_, TransformFromPhi(phi), least);
       });
   for (Individual& shot : best_shots_) {
-    if (shot.fitness > kRejectedFitness)
-      shot.fitness += kContrastWeight * Contrast(TransformFromPhi(shot.phi));
+    if (shot.fitness <= kRejectedFitness) continue;
+    shot.fitness += kContrastWeight * Contrast(TransformFromPhi(shot.phi));
     population_.Insert(shot.phi, shot.fitness);
   }
   const int evaluations = lowered(r.search_evaluations, kFewestEvaluations);
@@ -150,6 +150,7 @@ std::vector<Vector6d> RefinedEstimator::Niches() const {
       static_cast<std::size_t>(Lowered(settings_.refined.search_niches, effort_.searching, 1));
   std::vector<Vector6d> niches;
   for (const Individual& individual : all) {
+    if (individual.fitness <= kRejectedFitness && !niches.empty()) break;
     if (std::none_of(niches.begin(), niches.end(), [&](const Vector6d& other) {
           return ((individual.phi - other).head<3>().array().abs() < apart).all();
         }))

@@ -15,7 +15,8 @@ constexpr std::array<double, 4> kTurns_rad = {0.3, -0.3, 0.55, -0.55};
 constexpr int kFirstReach_px = 10, kReach_px = 8, kTurnedReach_px = 9, kKnownReach_px = 7;
 constexpr int kTurnedIterations = 4;
 constexpr std::size_t kTurnedPlaces = 2;
-constexpr double kGrid_rad = 0.18;
+constexpr double kGrid_rad = 0.18;     ///< at least
+constexpr int kMostSteps = 4;          ///< of the grid, about each axis
 constexpr std::size_t kBestTurns = 4;  ///< of the grid, that are tried at a place
 constexpr double kNeighbour_m = 0.06;
 constexpr std::ptrdiff_t kOfOnePlace = 3;  ///< neighbours among the promising
@@ -68,9 +69,11 @@ void RefinedEstimator::KeepPromising() {
 
 // Those of a grid over the space's angles that fit best at a place, no two beside each other.
 std::vector<Eigen::Matrix3d> RefinedEstimator::BestTurns(const Eigen::Vector3d& p_CM) {
+  if (effort_.searching < kLittleEffort) return {};
   const SearchSpace& space = population_.space();
   const auto steps = [&](int i) {
-    const int count = std::max(1, static_cast<int>(std::lround(space.range()[i] / kGrid_rad)));
+    const int count =
+        std::clamp(static_cast<int>(std::lround(space.range()[i] / kGrid_rad)), 1, kMostSteps);
     std::vector<double> angles;
     for (int k = 0; k <= count; ++k) angles.push_back(space.min[i] + space.range()[i] * k / count);
     return angles;
