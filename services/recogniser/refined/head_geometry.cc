@@ -14,7 +14,7 @@ Eigen::Vector3d AdultEyes() {
   return {0, static_cast<double>(shape.eye_y), -static_cast<double>(inside)};
 }
 
-Eigen::Vector3d AdultOrigin() { return {0, -0.0085, 0.018}; }
+Eigen::Vector3d AdultOrigin() { return {0, -0.0085, 0.015}; }
 
 HeadTable TableOf(const HeadSurface& surface, int level) {
   HeadTable table;

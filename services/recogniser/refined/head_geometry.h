@@ -28,8 +28,8 @@ inline Eigen::Vector3d TowardsCamera(const RigidTransform& X_CM) {
 /// Between the pupils of the generic adult, on its surface: where every head has them in M [m].
 Eigen::Vector3d AdultEyes();
 
-/// The centre of an adult's cranium in M [m], in the mean of the heads that the generic one was
-/// learned from: the R of heads that name no origin of their own (ChosenHead).
+/// The centre of an adult's cranium in M [m], about the middle of the heads that the generic one
+/// was learned from: the R of heads that name no origin of their own (ChosenHead).
 Eigen::Vector3d AdultOrigin();
 
 /// @p surface by direction, for the level of so many vertices (see HeadTable); with the border of
