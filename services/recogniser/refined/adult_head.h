@@ -20,11 +20,17 @@ class AdultLooks {
     std::array<float, kModes> modes{};  ///< fine band: one standard deviation of each
     bool known{false};
   };
+  /// A face is value = gain (mean + modes a + what remains) + offset, a of variance 1. What remains
+  /// is of the variance doubt^2 + kOwnDoubt^2, and so alike for neighbours that a place is worth
+  /// kIndependence of one; the gain is at least kLeastGain of what would explain all contrast.
+  static constexpr float kOwnDoubt = 0.2f, kIndependence = 0.12f, kLeastGain = 0.4f;
+  static float Weight(float doubt) { return 1 / (doubt * doubt + kOwnDoubt * kOwnDoubt); }
+
   /// At (@p x_m, @p y_m) in M of a head that has its features where adults have them.
   Place At(float x_m, float y_m) const;
 
-  int columns, rows;
-  float left_m, top_m, step_m;
+  int columns{0}, rows{0};
+  float left_m{0}, top_m{0}, step_m{1};
   std::vector<Place> cells;
 };
 

@@ -25,12 +25,10 @@ struct Kind {
     return weight * misfit / std::sqrt(1 + misfit * misfit / (limit * limit));
   }
 };
-constexpr Kind kMirrorLooks{0.5, 2, 0.3};             ///< of the face's contrast
-constexpr Kind kMirrorShape{0.001, 3, 0.1};           ///< [m]
-constexpr Kind kShape{0.0015, 3, 0.25};               ///< [m] that the modes leave
-constexpr Kind kLooks{1, 2, 0.35};                    ///< of what is known of a place
-constexpr float kOwnDoubt = 0.2f, kLeastGain = 0.4f;  ///< as LooksFit
-constexpr double kIndependence = 0.12;                ///< likewise
+constexpr Kind kMirrorLooks{0.5, 2, 0.3};    ///< of the face's contrast
+constexpr Kind kMirrorShape{0.001, 3, 0.1};  ///< [m]
+constexpr Kind kShape{0.0015, 3, 0.25};      ///< [m] that the modes leave
+constexpr Kind kLooks{1, 2, 0.35};           ///< of what is known of a place
 
 constexpr double kLeastInformation = 1e-3;  ///< [1/rad^2]
 constexpr int kPerPoint = 4, kMostSteps = 12, kFewSteps = 3;
@@ -124,6 +122,8 @@ void FaceFrame::AddMirrored(Asked* asked, const RigidTransform& X_MN, double* mi
 
 double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, double* misfits) const {
   constexpr int kModes = AdultLooks::kModes;
+  constexpr double kLeastGain = AdultLooks::kLeastGain;
+  constexpr double kIndependence = AdultLooks::kIndependence;
   const Eigen::Isometry3f X(X_MN.matrix().cast<float>());
   const auto size = static_cast<Eigen::Index>(asked.points.size());
   Eigen::MatrixXd modes(size, kModes);
@@ -136,7 +136,7 @@ double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, doubl
     if (!place.known) continue;
     mean[n] = static_cast<double>(place.mean[kFineBand]);
     value[n] = static_cast<double>(asked.value[i]);
-    weight[n] = 1 / static_cast<double>(place.doubt * place.doubt + kOwnDoubt * kOwnDoubt);
+    weight[n] = static_cast<double>(AdultLooks::Weight(place.doubt));
     for (int k = 0; k < kModes; ++k)
       modes(n, k) = static_cast<double>(place.modes[static_cast<std::size_t>(k)]);
     ++n;
@@ -155,8 +155,7 @@ double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, doubl
     const double x = w.dot(pattern) / sum;
     const double var_x = std::max((w.array() * (pattern.array() - x).square()).sum(), 1e-9);
     const double cov = (w.array() * (pattern.array() - x) * (v.array() - y)).sum();
-    const double gain =
-        std::max(cov / var_x, static_cast<double>(kLeastGain) * std::sqrt(var_y / var_x));
+    const double gain = std::max(cov / var_x, kLeastGain * std::sqrt(var_y / var_x));
     const Eigen::VectorXd seen = ((v.array() - y) / gain + x).matrix();
     off = seen - pattern;
     likeness = 1 - (w.dot(off.cwiseAbs2()) + a.squaredNorm() / kIndependence) * gain * gain / var_y;

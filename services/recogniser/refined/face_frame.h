@@ -44,7 +44,7 @@ class FaceFrame {
     const std::vector<float>& radii;  ///< [m] of its surface, by vertex
     const Looks& looks;
     double contrast;  ///< rms of the face's brightness
-    /// By point, where its place and its mirrored one were found last: they hardly move.
+    /// By point, where its mirrored place and its own were found last: they hardly move.
     std::vector<std::array<std::size_t, 2>> triangles;
   };
 

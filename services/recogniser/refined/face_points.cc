@@ -1,6 +1,7 @@
 #include "services/recogniser/refined/face_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "services/recogniser/refined/adult_head.h"
@@ -40,6 +41,21 @@ Vector3f PointAt(const HeadSurface& surface, float y, float azimuth) {
   return p;
 }
 
+/// Where the mean adult has what the head of @p shape has at (@p x, @p y): sideways in proportion
+/// to the eyes, down piece by piece between the features.
+Eigen::Vector2f OnTheAdult(const HeadShape& shape, float x, float y) {
+  const HeadShape adult;
+  const std::array<float, 4> from = {shape.brow_y, shape.eye_y, shape.nostril_y, shape.mouth_y};
+  const std::array<float, 4> to = {adult.brow_y, adult.eye_y, adult.nostril_y, adult.mouth_y};
+  const float aside = x * adult.eye_x / shape.eye_x;
+  if (y <= from.front()) return {aside, y + to.front() - from.front()};
+  if (y >= from.back()) return {aside, y + to.back() - from.back()};
+  std::size_t k = 1;
+  while (y > from[k]) ++k;
+  const float share = (y - from[k - 1]) / (from[k] - from[k - 1]);
+  return {aside, to[k - 1] + share * (to[k] - to[k - 1])};
+}
+
 }  // namespace
 
 FacePoints FacePointsOf(const HeadSurface& surface, double spacing_m) {
@@ -56,7 +72,8 @@ FacePoints FacePointsOf(const HeadSurface& surface, double spacing_m) {
         const Vector3f p = side > 0 ? right : PointAt(surface, y, -azimuth);
         const Vector3f n = surface.NormalAt(p);
         if (surface.HairSide(p) > -0.009f || n.z() > -0.05f) continue;
-        const AdultLooks::Place looks = TheAdult().looks.At(p.x(), p.y());
+        const Eigen::Vector2f on_adult = OnTheAdult(surface.shape(), p.x(), p.y());
+        const AdultLooks::Place looks = TheAdult().looks.At(on_adult.x(), on_adult.y());
         const bool front =
             n.z() < -0.5f && p.z() < -0.030f && std::abs(p.x()) < 0.056f && looks.known;
         face.points.push_back(p);

@@ -34,7 +34,7 @@ struct HeadLearner::Work {
     const std::size_t last = bundle->num_views() - 1;
     const RigidTransform X_CN = bundle->pose(last);
     for (int turn = 0; turn < kTurns; ++turn) {
-      if (IsSeenWidely()) bundle->Rebase();  // then the generic shape has nothing to add
+      if (IsSeenWidely()) bundle->Rebase();  // then nearness to the mean adult no longer counts
       for (int round = 0; round < kRounds; ++round) bundle->Round();
       const HeadGeometry head = bundle->Enrolled();
       const FaceFrame::Found found = finder->Find(*head.face, head.surface);

@@ -7,12 +7,11 @@
 namespace visavis {
 namespace {
 
-constexpr int kFewest = 40;             ///< points
-constexpr float kOwnDoubt = 0.2f;       ///< of the contrast, beside what is known of the place
-constexpr float kIndependence = 0.12f;  ///< neighbours see the same
-constexpr float kLeastGain = 0.4f;      ///< of what would explain all contrast
-constexpr float kNoise = 0.5f;          ///< [levels] of what a point shows
-constexpr double kPlain = 0.05;         ///< [levels] contrast that is none
+constexpr float kIndependence = AdultLooks::kIndependence;
+constexpr double kLeastGain = AdultLooks::kLeastGain;
+constexpr int kFewest = 40;      ///< points
+constexpr float kNoise = 0.5f;   ///< [levels] of what a point shows
+constexpr double kPlain = 0.05;  ///< [levels] contrast that is none
 constexpr int kRounds = 2;
 
 }  // namespace
@@ -24,7 +23,7 @@ LooksFit::LooksFit(const FacePoints& face) {
     point.index = i;
     point.p = face.points[i];
     point.mean = face.generic[kFineBand][i];
-    point.weight = 1 / (face.doubt[i] * face.doubt[i] + kOwnDoubt * kOwnDoubt);
+    point.weight = AdultLooks::Weight(face.doubt[i]);
     for (int k = 0; k < kModes; ++k) point.modes[k] = face.modes[i][static_cast<std::size_t>(k)];
     points_.push_back(point);
   }
@@ -55,8 +54,7 @@ void LooksFit::FindLights(const std::array<const FaceSamples*, 2>& samples) {
     // What is plain shows noise alone, which nothing explains.
     const double var_y = std::max(yy - y * y / n, 0.0);
     const double all = var_y + n * kPlain * kPlain;
-    const double gain =
-        std::max(cov / var_x, static_cast<double>(kLeastGain) * std::sqrt(all / var_x));
+    const double gain = std::max(cov / var_x, kLeastGain * std::sqrt(all / var_x));
     const double unexplained = var_y - 2 * gain * cov + gain * gain * var_x;
     light_[e] = {true, static_cast<float>(gain), static_cast<float>((y - gain * x) / n),
                  (var_y - unexplained - gain * gain * cost) / all};

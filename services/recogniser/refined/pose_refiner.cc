@@ -9,6 +9,7 @@ namespace visavis {
 namespace {
 
 constexpr int kHairlinePoints = 33;
+constexpr int kRoughIterations = 3;
 constexpr int kMoreRounds = 2;
 constexpr double kWellNcc = 0.92;     ///< of the texture: it fits, no more rounds
 constexpr double kWholeNcc = 0.8;     ///< of the texture: nothing is before the face
@@ -90,16 +91,21 @@ void PoseRefiner::AddGenericFace(const StereoView& view, const std::array<EyePos
   if (is_fine && looks == Looks::kFitted) looks_.AddTo(seen, poses[0].R_CM, weight, equations);
   if (seen[0] == nullptr || seen[1] == nullptr) return;
   refined->stereo_ncc = StereoCorrelation(samples_[0], samples_[1], face_.size());
-  AddAgreement(view, poses, face_, kFineBand, stereo_weight, equations);
+  AddAgreement(view, poses, face_, band, kFineBand, stereo_weight, equations);
 }
 
 void PoseRefiner::AddAgreement(const StereoView& view, const std::array<EyePose, 2>& poses,
-                               const FacePoints& face, Band plane, double weight,
+                               const FacePoints& face, Band sampled, Band plane, double weight,
                                PoseEquations* equations) {
   if (weight <= 0) return;
-  for (std::size_t e = 0; e < 2; ++e)
-    SampleFace(face, view[e], poses[e], plane, kMinFacing, &agreeing_[e]);
-  AddStereo(face, agreeing_[0], agreeing_[1], poses[0].R_CM,
+  if (plane != sampled) {
+    for (std::size_t e = 0; e < 2; ++e) {
+      SampleFace(face, view[e], poses[e], plane, kMinFacing, &agreeing_[e]);
+      for (std::size_t i = 0; i < face.size(); ++i) agreeing_[e].seen[i] &= samples_[e].seen[i];
+    }
+  }
+  const std::array<FaceSamples, 2>& eyes = plane == sampled ? samples_ : agreeing_;
+  AddStereo(face, eyes[0], eyes[1], poses[0].R_CM,
             plane == kBrightness ? kBrightnessStereoSigma : kFineStereoSigma,
             static_cast<float>(weight), equations);
 }
@@ -132,7 +138,7 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
         config_.stereo_weight_with_texture *
         std::clamp((kNoStereoHidden - hidden) / (kNoStereoHidden - kStereoHidden), 0.0, 1.0);
     refined->stereo_ncc = StereoCorrelation(samples_[0], samples_[1], texture.points().size());
-    AddAgreement(view, poses, texture.points(), texture.fixed() ? kBrightness : kFineBand,
+    AddAgreement(view, poses, texture.points(), band, texture.fixed() ? kBrightness : kFineBand,
                  stereo_weight, equations);
   }
 }
@@ -158,17 +164,23 @@ PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform&
 // face is taken to be whole first.
 Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
                             const FaceTexture* texture, int iterations, int reach_px) {
-  Refined whole = Refine(view, X_CM, texture, iterations, reach_px, false);
+  Refined whole = Refine(view, X_CM, texture, Steps{iterations, reach_px});
   if (texture == nullptr) return whole;
   for (int k = 0; k < kMoreRounds && whole.texture_ncc < kWellNcc; ++k)
-    whole = Refine(view, whole.X_CM, texture, iterations, reach_px, false);
+    whole = Refine(view, whole.X_CM, texture, Steps{iterations, reach_px});
   if (whole.texture_ncc > kWholeNcc) return whole;
-  const Refined hidden = Refine(view, X_CM, texture, iterations, reach_px, true);
+  const Refined hidden = Refine(view, X_CM, texture, {iterations, reach_px, false, true});
   return hidden.texture_ncc > whole.texture_ncc ? hidden : whole;
 }
 
+Refined PoseRefiner::RefineRoughly(const StereoView& view, const RigidTransform& X_CM,
+                                   int reach_px) {
+  return Refine(view, X_CM, nullptr, {kRoughIterations, reach_px, true, false});
+}
+
 Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
-                            const FaceTexture* texture, int iterations, int reach_px, bool hide) {
+                            const FaceTexture* texture, const Steps& steps) {
+  const auto& [iterations, reach_px, rough, hide] = steps;
   Refined refined;
   refined.X_CM = X_CM;
   bool near = false;  // so much that the coarse band, which sees less, would only lead astray
@@ -195,7 +207,7 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
       if (i > 0 || !near) AddTexture(view, poses, band, *texture, hide, &equations, &refined);
     } else {
       AddContours(view, poses, reach, config_.outline_weight, &equations, &refined.contour);
-      const Looks looks = iterations > kRough   ? Looks::kFitted
+      const Looks looks = !rough                ? Looks::kFitted
                           : i + 1 == iterations ? Looks::kMeanAndLikeness
                                                 : Looks::kMean;
       AddGenericFace(view, poses, band, looks, config_.stereo_weight, &equations, &refined);

@@ -55,13 +55,14 @@ class PoseRefiner {
               const FacePoints& face);
 
   /// @param texture   learned, or null: the generic face then.
-  /// @param iterations  at most: a pose that has come to rest is left there. Up to kRough of them
-  ///                  fit the mean face, more that of all adults' faces which fits best.
+  /// @param iterations  at most: a pose that has come to rest is left there.
   /// @param reach_px  of the first step's contours; later ones look nearer.
   Refined Refine(const StereoView& view, const RigidTransform& X_CM, const FaceTexture* texture,
                  int iterations, int reach_px);
 
-  static constexpr int kRough = 3;
+  /// A few steps with the mean of all adults' faces, where Refine() fits which of them it is: for
+  /// starts of which most lead nowhere.
+  Refined RefineRoughly(const StereoView& view, const RigidTransform& X_CM, int reach_px);
 
   /// What the generic model alone says of the head at @p X_CM: equations of a correction [dp; w] in
   /// the M frame, X_CM' = X_CM [Exp(w), dp].
@@ -80,18 +81,24 @@ class PoseRefiner {
   /// What is asked of the generic face in a step.
   enum class Looks { kMean, kMeanAndLikeness, kFitted };
 
-  /// @p hide: what does not look like the texture may be behind something.
+  struct Steps {
+    int iterations, reach_px;
+    bool rough{false};
+    bool hide{false};  ///< what does not look like the texture may be behind something
+  };
   Refined Refine(const StereoView& view, const RigidTransform& X_CM, const FaceTexture* texture,
-                 int iterations, int reach_px, bool hide);
+                 const Steps& steps);
   void AddGenericFace(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
                       Looks looks, double stereo_weight, PoseEquations* equations,
                       Refined* refined);
   void AddTexture(const StereoView& view, const std::array<EyePose, 2>& poses, Band band,
                   const FaceTexture& texture, bool hide, PoseEquations* equations,
                   Refined* refined);
-  /// Both eyes see the same of @p plane at the points of @p face.
+  /// Both eyes see the same of @p plane at the points of @p face where they see @p sampled, the
+  /// band that samples_ are of.
   void AddAgreement(const StereoView& view, const std::array<EyePose, 2>& poses,
-                    const FacePoints& face, Band plane, double weight, PoseEquations* equations);
+                    const FacePoints& face, Band sampled, Band plane, double weight,
+                    PoseEquations* equations);
   void AddContours(const StereoView& view, const std::array<EyePose, 2>& poses, int reach_px,
                    double weight, PoseEquations* equations, ContourFit* fit);
 

@@ -185,10 +185,11 @@ void RefinedEstimator::Feedforward(const CameraStep& step) {
 RefinedEstimator::Candidate RefinedEstimator::RefineFrom(const RigidTransform& X_CM,
                                                          const FaceTexture* texture, int iterations,
                                                          int reach_px) {
-  Candidate candidate;
-  candidate.refined = head().refiner.Refine(view_, X_CM, texture, iterations, reach_px);
-  candidate.score = head().fitness.Evaluate(view_, candidate.refined.X_CM);
-  return candidate;
+  return Scored(head().refiner.Refine(view_, X_CM, texture, iterations, reach_px));
+}
+
+RefinedEstimator::Candidate RefinedEstimator::Scored(const Refined& refined) const {
+  return {refined, head().fitness.Evaluate(view_, refined.X_CM)};
 }
 
 RefinedEstimator::Candidate RefinedEstimator::Track() {

@@ -78,6 +78,7 @@ class RefinedEstimator final : public Estimator {
   /// Maps of the whole pictures, or of the part round @p X_CM.
   void BuildMaps(const RigidTransform* X_CM);
   void Feedforward(const CameraStep& step);
+  Candidate Scored(const Refined& refined) const;
   Candidate RefineFrom(const RigidTransform& X_CM, const FaceTexture* texture, int iterations,
                        int reach_px);
   Candidate Track();

@@ -114,8 +114,8 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
     std::vector<Eigen::Matrix3d> turns = BestTurns(place.translation());
     turns.push_back(place.linear());
     for (const Eigen::Matrix3d& R_CM : turns)
-      candidates_.push_back(RefineFrom(MakeTransform(R_CM, place.translation()), nullptr,
-                                       PoseRefiner::kRough, kFirstReach_px));
+      candidates_.push_back(Scored(head().refiner.RefineRoughly(
+          view_, MakeTransform(R_CM, place.translation()), kFirstReach_px)));
   }
   SortPlausible();
   KeepPromising();

@@ -154,6 +154,32 @@ TEST(FacePointsTest, WhereTheGenericFaceSaysNothingItIsZero) {
   EXPECT_GT(silent, 50);
 }
 
+TEST(FacePointsTest, FeaturesFollowTheShape) {
+  const HeadTable table = TableOf(SharedAdultHead().surface, 4);
+  HeadShape shape;
+  shape.eye_y += 0.010f;
+  shape.eye_x += 0.006f;
+  const FacePoints lower = FacePointsOf(HeadSurface(shape, table), 0.005);
+  // The middle of the darkness round a pupil.
+  const auto pupil = [](const FacePoints& face, const Eigen::Vector2f& near) {
+    Eigen::Vector2f weighted = Eigen::Vector2f::Zero();
+    float sum = 0;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const Eigen::Vector2f p = face.points[i].head<2>();
+      if (!face.has_generic[i] || (p - near).norm() > 0.014f) continue;
+      const float dark = std::max(0.0f, -face.generic[kFineBand][i]);
+      sum += dark;
+      weighted += dark * p;
+    }
+    return Eigen::Vector2f(weighted / sum);
+  };
+  const HeadShape adult;
+  const Eigen::Vector2f moved =
+      pupil(lower, {shape.eye_x, shape.eye_y}) - pupil(Face(), {adult.eye_x, adult.eye_y});
+  EXPECT_NEAR(moved.x(), 0.006f, 0.003f);
+  EXPECT_NEAR(moved.y(), 0.010f, 0.003f);
+}
+
 TEST(FacePointsTest, FacesDifferWhereTheGenericOneSaysAnything) {
   ASSERT_EQ(Face().doubt.size(), Face().size());
   ASSERT_EQ(Face().modes.size(), Face().size());
