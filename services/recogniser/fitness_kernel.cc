@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "services/recogniser/look_up-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace visavis {
 namespace HWY_NAMESPACE {
@@ -37,7 +39,7 @@ auto Fetch(D d, const float matrix[3][3], const FitnessView& view, const Fitness
   const auto column = hn::ConvertTo(di, hn::Min(hn::Max(px, zero), hn::Set(d, map.max_x)));
   const auto row = hn::ConvertTo(di, hn::Min(hn::Max(py, zero), hn::Set(d, map.max_y)));
   const auto index = hn::Add(hn::Mul(row, hn::Set(di, map.stride)), column);
-  return hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(map.pixels), index);
+  return LookUp(di, reinterpret_cast<const std::int32_t*>(map.pixels), index);
 }
 
 void SumFitnessTarget(const FitnessView& view, const FitnessMap& map, const FitnessPoints& points,

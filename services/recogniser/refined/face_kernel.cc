@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "services/recogniser/look_up-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace visavis {
 namespace HWY_NAMESPACE {
@@ -71,7 +73,7 @@ struct PatternEye {
     const VI column = hn::ConvertTo(di, hn::IfThenElseZero(*counts, a));
     const VI row = hn::ConvertTo(di, hn::IfThenElseZero(*counts, b));
     const VI index = hn::Add(hn::Mul(row, hn::Set(di, band.width)), column);
-    const VI fetched = hn::ShiftRight<3>(Lower(hn::GatherIndex(di, band.pairs, index)));
+    const VI fetched = hn::ShiftRight<3>(Lower(LookUp(di, band.pairs, index)));
     return hn::Min(hn::Max(fetched, hn::Set(di, -kLargestBandStep)), hn::Set(di, kLargestBandStep));
   }
 };
@@ -132,7 +134,7 @@ void Interpolate(const BandView& band, VI index, V a, V b, V* value, V* du, V* d
   const D d;
   const DI di;
   const auto fetch = [&](int row, int column) {
-    return hn::GatherIndex(di, band.pairs + row * band.width + column, index);
+    return LookUp(di, band.pairs + row * band.width + column, index);
   };
   const auto lower = [&](VI pairs) { return hn::ConvertTo(d, Lower(pairs)); };
   const auto upper = [&](VI pairs) { return hn::ConvertTo(d, Upper(pairs)); };

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "services/recogniser/look_up-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace visavis {
 namespace HWY_NAMESPACE {
@@ -28,7 +30,7 @@ void LookUpScoresTarget(const std::uint8_t* pixels, int n, bool bgr, const std::
     const auto g = hn::And(hn::PromoteTo(du, green), high_bits);
     const auto b = hn::ShiftRight<4>(hn::PromoteTo(du, bgr ? first : last));
     const auto bin = hn::BitCast(di, hn::Or(hn::Or(hn::ShiftLeft<4>(r), g), b));
-    hn::StoreU(hn::GatherIndex(du, table, bin), du, scores + i);
+    hn::StoreU(LookUp(du, table, bin), du, scores + i);
   }
   for (; i < n; ++i) {
     const std::uint8_t* p = pixels + 3 * i;

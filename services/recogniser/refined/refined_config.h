@@ -31,7 +31,7 @@ struct EvidenceConfig {
   double lock_log_odds{4.5};         ///< of a face whoever it is, before TRACKING
   double lock_likeness{0.2};         ///< of its features to a face's, at least, likewise
   double clear_log_odds{7};          ///< beyond all doubt: no other place is looked at
-  double learned_likeness{0.25};     ///< of what was learned to a face, at least, not to forget it
+  double learned_likeness{0.33};     ///< of what was learned to a face, at least, not to forget it
   double enrolled_texture_ncc{0.8};  ///< an enrolled face, to be found
   double keep_texture_ncc{0.6};      ///< learned texture, while TRACKING
   double keep_ncc{0.1};              ///< generic pattern, while TRACKING

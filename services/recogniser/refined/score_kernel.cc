@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "services/recogniser/refined/score_map.h"
 
@@ -9,6 +10,8 @@
 #define HWY_TARGET_INCLUDE "services/recogniser/refined/score_kernel.cc"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "services/recogniser/look_up-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace visavis {
@@ -59,7 +62,7 @@ VI Fetch(const ScoreView& map, V u, V v) {
   const VI column = hn::ConvertTo(di, hn::IfThenElseZero(inside, x));
   const VI row = hn::ConvertTo(di, hn::IfThenElseZero(inside, y));
   const VI index = hn::Add(hn::Mul(row, hn::Set(di, map.stride)), column);
-  const VI fetched = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(map.scores), index);
+  const VI fetched = LookUp(di, reinterpret_cast<const std::int32_t*>(map.scores), index);
   return hn::IfThenElse(hn::RebindMask(di, inside), fetched,
                         hn::Set(di, static_cast<std::int32_t>(ScoreMap::kUnknown)));
 }
@@ -79,6 +82,38 @@ struct Compacted {
   float normal_x[kSize + kLanes], normal_y[kSize + kLanes], normal_z[kSize + kLanes];
   std::int32_t shift[kSize + kLanes];
 };
+
+// The points of the block at @p i that @p mask says.
+void Append(const ScorePoints& points, int i, hn::Mask<D> mask, Compacted* compacted) {
+  Compacted& c = *compacted;
+#if HWY_TARGET <= HWY_AVX3
+  const auto keep = [&](const auto& from, auto* to) {
+    const hn::CappedTag<std::remove_reference_t<decltype(*to)>, kLanes> d;
+    const auto kept = hn::Compress(hn::LoadU(d, from.data() + i), hn::RebindMask(d, mask));
+    hn::StoreU(kept, d, to + c.n);
+  };
+  keep(points.x, c.x);
+  keep(points.y, c.y);
+  keep(points.z, c.z);
+  keep(points.normal_x, c.normal_x);
+  keep(points.normal_y, c.normal_y);
+  keep(points.normal_z, c.normal_z);
+  keep(points.shift, c.shift);
+  c.n += static_cast<int>(hn::CountTrue(D(), mask));
+#else
+  ForLanes(D(), mask, [&](int lane) {
+    const auto from = static_cast<std::size_t>(i + lane);
+    c.x[c.n] = points.x[from];
+    c.y[c.n] = points.y[from];
+    c.z[c.n] = points.z[from];
+    c.normal_x[c.n] = points.normal_x[from];
+    c.normal_y[c.n] = points.normal_y[from];
+    c.normal_z[c.n] = points.normal_z[from];
+    c.shift[c.n] = points.shift[from];
+    ++c.n;
+  });
+#endif
+}
 
 // The sum over the points and all rings.
 VI SumCompacted(const KernelEye& eye, const ScoreView& map, const Compacted& points,
@@ -134,19 +169,7 @@ ScoreSum SumScoresTarget(const KernelEye& eye, const ScoreView& map, const Score
     const V facing = FacingAt(eye, points, i);
     const auto mask = hn::And(hn::Lt(facing, zero), hn::Gt(facing, low));
     if (hn::AllFalse(d, mask)) continue;
-    const int at = compacted.n;
-    const auto keep = [&](const std::vector<float>& from, float* to) {
-      hn::StoreU(hn::Compress(Load(from, i), mask), d, to + at);
-    };
-    keep(points.x, compacted.x);
-    keep(points.y, compacted.y);
-    keep(points.z, compacted.z);
-    keep(points.normal_x, compacted.normal_x);
-    keep(points.normal_y, compacted.normal_y);
-    keep(points.normal_z, compacted.normal_z);
-    const VI shift = hn::LoadU(di, points.shift.data() + i);
-    hn::StoreU(hn::Compress(shift, hn::RebindMask(di, mask)), di, compacted.shift + at);
-    compacted.n += static_cast<int>(hn::CountTrue(d, mask));
+    Append(points, i, mask, &compacted);
     if (compacted.n > Compacted::kSize - kLanes) flush();
   }
   flush();
@@ -156,7 +179,6 @@ ScoreSum SumScoresTarget(const KernelEye& eye, const ScoreView& map, const Score
 int FindNearOutlineTarget(const KernelEye& eye, const OutlineVertices& vertices, float* facing,
                           std::int32_t* near) {
   const D d;
-  const DI di;
   const int width = static_cast<int>(hn::Lanes(d)), n = static_cast<int>(vertices.reach.size());
   const V distance = hn::Set(d, eye.distance);
   int found = 0;
@@ -165,10 +187,7 @@ int FindNearOutlineTarget(const KernelEye& eye, const OutlineVertices& vertices,
     hn::StoreU(value, d, facing + i);
     const V reach =
         hn::Add(Load(vertices.reach, i), hn::Mul(Load(vertices.reach_a_m, i), distance));
-    const auto mask = hn::RebindMask(di, hn::Le(hn::Abs(value), reach));
-    // Not CompressStore: compressing into memory is slow on some processors.
-    hn::StoreU(hn::Compress(hn::Iota(di, i), mask), di, near + found);
-    found += static_cast<int>(hn::CountTrue(di, mask));
+    ForLanes(d, hn::Le(hn::Abs(value), reach), [&](int lane) { near[found++] = i + lane; });
   }
   return found;
 }
@@ -250,7 +269,7 @@ Posterior Locate(const ScoreView& map, V u, V v, V nu, V nv, VI edge, int reach,
   }
   V total = hn::Zero(d), first = total, second = total;
   for (int k = 0; k < n_pixels - 1; ++k) {
-    const V p = hn::GatherIndex(d, likelihoods, hn::Sub(best, sums[k]));
+    const V p = LookUp(d, likelihoods, hn::Sub(best, sums[k]));
     const V at = hn::Set(d, static_cast<float>(k - reach) + 0.5f), moment = hn::Mul(p, at);
     total = hn::Add(total, p);
     first = hn::Add(first, moment);
