@@ -9,7 +9,7 @@
 // the same frames, aligned by the run itself, the mean of the normalised estimation error squared
 // (e' P^-1 e with the covariance P that was told: expected 6), of the position's part and of the
 // rotation's (expected 3 each); that offset of the run itself, x y z [mm] and its turn about x, y,
-// z [deg].
+// z [deg]. "-": no such frame.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -85,12 +85,16 @@ RigidTransform OffsetOf(const std::vector<Frame>& frames, double settle_s) {
   return X_MT;
 }
 
+bool IsMeasured(const Frame& frame) {
+  return frame.tracking && frame.truth && frame.time_s >= kSettleS;
+}
+
 /// RMSE [mm, deg] over TRACKING frames after the settling time.
 std::pair<double, double> Rmse(const std::vector<Frame>& frames, const RigidTransform& X_MT) {
   double mm2 = 0, deg2 = 0;
   int n = 0;
   for (const Frame& frame : frames) {
-    if (!frame.tracking || !frame.truth || frame.time_s < kSettleS) continue;
+    if (!IsMeasured(frame)) continue;
     const auto error = ComputeRecognitionError(*frame.truth, frame.X_CM * X_MT);
     mm2 += 1e6 * error.position.squaredNorm();
     deg2 += kDeg * kDeg * error.total_angle * error.total_angle;
@@ -104,7 +108,7 @@ Eigen::Vector3d Nees(const std::vector<Frame>& frames, const RigidTransform& X_M
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int n = 0;
   for (const Frame& frame : frames) {
-    if (!frame.tracking || !frame.truth || frame.time_s < kSettleS) continue;
+    if (!IsMeasured(frame)) continue;
     const RigidTransform X_CT = frame.X_CM * X_MT;
     Vector6d e;  // as head_pose_t says: p_CM, small turn about C's axes
     e << frame.truth->translation() - X_CT.translation(),
@@ -141,16 +145,21 @@ void PrintRow(const std::string& log, const std::vector<Frame>& frames,
     ms.push_back(frame.ms);
   }
   std::sort(ms.begin(), ms.end());
-  const auto [mm, deg] = Rmse(frames, X_MT);
+  std::printf("%s %d %.1f %.2f %d", log.c_str(), with_head,
+              100.0 * tracking / std::max(with_head, 1),
+              100.0 * wrong / static_cast<double>(frames.size()), first);
+  const double median_ms = ms[ms.size() / 2], late_ms = ms[ms.size() * 99 / 100];
+  if (std::none_of(frames.begin(), frames.end(), IsMeasured)) {
+    std::printf(" - - - - %.2f %.2f - - - - - - - - -\n", median_ms, late_ms);
+    return;
+  }
   const RigidTransform X_MT_self = OffsetOf(frames, kSettleS);
+  const auto [mm, deg] = Rmse(frames, X_MT);
   const auto [self_mm, self_deg] = Rmse(frames, X_MT_self);
-  const Eigen::Vector3d nees = Nees(frames, X_MT_self);
-  std::printf("%s %d %.1f %.2f %d %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f", log.c_str(),
-              with_head, 100.0 * tracking / std::max(with_head, 1),
-              100.0 * wrong / static_cast<double>(frames.size()), first, mm, deg, self_mm, self_deg,
-              ms[ms.size() / 2], ms[ms.size() * 99 / 100], nees[0], nees[1], nees[2]);
-  const Eigen::Vector3d p = 1e3 * X_MT_self.translation(),
+  const Eigen::Vector3d nees = Nees(frames, X_MT_self), p = 1e3 * X_MT_self.translation(),
                         turn = kDeg * LogRotation(X_MT_self.linear());
+  std::printf(" %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f %.2f", mm, deg, self_mm, self_deg,
+              median_ms, late_ms, nees[0], nees[1], nees[2]);
   std::printf(" %.1f %.1f %.1f %.1f %.1f %.1f\n", p.x(), p.y(), p.z(), turn.x(), turn.y(),
               turn.z());
 }

@@ -53,7 +53,6 @@ std::unique_ptr<HeadBundle> BundleOf(const std::string& log, const RecogniserCon
   const RefinedSettings settings = config.RefinedSettings();
   auto bundle = std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(),
                                              settings.space.distance(), head, reading.colors);
-  bundle->CompareEyesIn(kFineBand);
   const auto views = reading.selection.Views(kMostViews);
   auto view = views.begin();
   std::int64_t frame = 0;

@@ -21,8 +21,7 @@ constexpr double kOutside_m = 0.010, kOutsideRoughness_m = 0.0008;
 constexpr double kIndependence = 0.05, kOutlineIndependence = 0.3;
 constexpr float kStereoFacing = 0.75f;
 constexpr double kStereoIndependence = 1;
-/// That the eyes differ by, of the contrast.
-constexpr float kBrightnessSigma = 0.06f, kFineSigma = 0.3f;
+constexpr float kStereoSigma = 0.06f;  ///< of brightness, that the eyes differ by: of the contrast
 constexpr float kRelativeSigma = 0.35f, kNoise = 0.5f;  ///< as in the refiner: contrast, levels
 
 PixelBox Common(const PixelBox& a, const PixelBox& b) {
@@ -181,13 +180,12 @@ void HeadBundle::AddStereoShape(const HeadView& view) {
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
   FaceSamples right(points.size()), left(points.size());
   for (const std::size_t eye : {0, 1})
-    SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), eyes_band_, kStereoFacing,
+    SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), kBrightness, kStereoFacing,
                eye == 0 ? &right : &left);
   const GainOffset fit = FitEyes(right, left, points.size());
   if (fit.count < kFewestPoints) return;
   const auto gain = static_cast<float>(fit.gain), offset = static_cast<float>(fit.offset);
-  const float relative = eyes_band_ == kBrightness ? kBrightnessSigma : kFineSigma;
-  const float sigma = relative * static_cast<float>(fit.pattern_rms) + kNoise;
+  const float sigma = kStereoSigma * static_cast<float>(fit.pattern_rms) + kNoise;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!right.seen[i] || !left.seen[i]) continue;
     const Eigen::Vector3f d = points.points[i].normalized();

@@ -55,10 +55,6 @@ class HeadBundle {
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
 
-  /// What of the pictures tells the shape as both eyes see it: brightness at first. Light that skin
-  /// mirrors lies behind it, and is smooth: of many views the fine band tells enough without it.
-  void CompareEyesIn(Band band) { eyes_band_ = band; }
-
   /// The prior that holds the shape to the one it began with holds it to what it is now.
   void Rebase();
 
@@ -88,7 +84,6 @@ class HeadBundle {
   void RebuildModel();
 
   const RefinerConfig config_;
-  Band eyes_band_{kBrightness};
   const HeadGeometry start_;
   HeadTable start_table_;
   WorkingPair pair_;

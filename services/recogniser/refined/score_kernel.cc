@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "services/recogniser/refined/score_map.h"
 
@@ -86,33 +85,15 @@ struct Compacted {
 // The points of the block at @p i that @p mask says.
 void Append(const ScorePoints& points, int i, hn::Mask<D> mask, Compacted* compacted) {
   Compacted& c = *compacted;
-#if HWY_TARGET <= HWY_AVX3
-  const auto keep = [&](const auto& from, auto* to) {
-    const hn::CappedTag<std::remove_reference_t<decltype(*to)>, kLanes> d;
-    const auto kept = hn::Compress(hn::LoadU(d, from.data() + i), hn::RebindMask(d, mask));
-    hn::StoreU(kept, d, to + c.n);
-  };
-  keep(points.x, c.x);
-  keep(points.y, c.y);
-  keep(points.z, c.z);
-  keep(points.normal_x, c.normal_x);
-  keep(points.normal_y, c.normal_y);
-  keep(points.normal_z, c.normal_z);
-  keep(points.shift, c.shift);
-  c.n += static_cast<int>(hn::CountTrue(D(), mask));
-#else
-  ForLanes(D(), mask, [&](int lane) {
-    const auto from = static_cast<std::size_t>(i + lane);
-    c.x[c.n] = points.x[from];
-    c.y[c.n] = points.y[from];
-    c.z[c.n] = points.z[from];
-    c.normal_x[c.n] = points.normal_x[from];
-    c.normal_y[c.n] = points.normal_y[from];
-    c.normal_z[c.n] = points.normal_z[from];
-    c.shift[c.n] = points.shift[from];
-    ++c.n;
-  });
-#endif
+  const KeptLanes<D> kept(D(), mask);
+  kept.Copy(points.x.data() + i, c.x + c.n);
+  kept.Copy(points.y.data() + i, c.y + c.n);
+  kept.Copy(points.z.data() + i, c.z + c.n);
+  kept.Copy(points.normal_x.data() + i, c.normal_x + c.n);
+  kept.Copy(points.normal_y.data() + i, c.normal_y + c.n);
+  kept.Copy(points.normal_z.data() + i, c.normal_z + c.n);
+  kept.Copy(points.shift.data() + i, c.shift + c.n);
+  c.n += kept.count();
 }
 
 // The sum over the points and all rings.
@@ -187,7 +168,11 @@ int FindNearOutlineTarget(const KernelEye& eye, const OutlineVertices& vertices,
     hn::StoreU(value, d, facing + i);
     const V reach =
         hn::Add(Load(vertices.reach, i), hn::Mul(Load(vertices.reach_a_m, i), distance));
-    ForLanes(d, hn::Le(hn::Abs(value), reach), [&](int lane) { near[found++] = i + lane; });
+    const KeptLanes<D> kept(d, hn::Le(hn::Abs(value), reach));
+    std::int32_t numbers[kLanes];
+    hn::StoreU(hn::Iota(DI(), i), DI(), numbers);
+    kept.Copy(numbers, near + found);
+    found += kept.count();
   }
   return found;
 }
