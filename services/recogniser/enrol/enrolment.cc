@@ -12,8 +12,8 @@
 namespace visavis {
 namespace {
 
-constexpr int kReadings = 3, kMostRounds = 60;
-constexpr double kStill_m = 2e-5;  ///< shape changes less in a round: done
+constexpr int kReadings = 3;
+constexpr int kRounds = 4;  ///< of a bundle: more let outlines lead shape and poses astray together
 constexpr std::size_t kMostViews = 60, kFewestViews = 3;
 
 double NoTime() { return 0; }
@@ -83,11 +83,10 @@ Enrolment Enrol(const std::string& log, const RecogniserConfig& config) {
                                   " directions: let the person turn the head slowly to all sides");
     }
     const auto bundle = BundleOf(log, config, enrolment.head, reading);
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kRounds; ++round) {
       const HeadBundle::Agreement agreement = bundle->Round();
       if (k == 0 && round == 0) enrolment.before = agreement;
       enrolment.after = agreement;
-      if (agreement.moved_m < kStill_m) break;
     }
     enrolment.head = bundle->Enrolled();
     enrolment.frames = reading.frames;
