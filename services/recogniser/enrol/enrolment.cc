@@ -7,13 +7,13 @@
 
 #include "services/recogniser/fitness_kernel.h"
 #include "services/recogniser/log_player.h"
+#include "services/recogniser/refined/face_bundle.h"
 #include "services/recogniser/refined/refined_estimator.h"
 
 namespace visavis {
 namespace {
 
-constexpr int kReadings = 3;
-constexpr int kRounds = 4;  ///< of a bundle: more let outlines lead shape and poses astray together
+constexpr int kReadings = 3, kRounds = 4;  ///< of the bundle, each turn
 constexpr std::size_t kMostViews = 60, kFewestViews = 3;
 
 double NoTime() { return 0; }
@@ -51,8 +51,9 @@ std::unique_ptr<HeadBundle> BundleOf(const std::string& log, const RecogniserCon
                                      const HeadGeometry& head, const Reading& reading) {
   LogPlayer player(log, config);
   const RefinedSettings settings = config.RefinedSettings();
-  auto bundle = std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(),
-                                             settings.space.distance(), head, reading.colors);
+  auto bundle =
+      std::make_unique<HeadBundle>(settings.refined.refiner, player.rig(),
+                                   settings.space.distance(), head, reading.colors, kFineBand);
   const auto views = reading.selection.Views(kMostViews);
   auto view = views.begin();
   std::int64_t frame = 0;
@@ -72,6 +73,7 @@ Enrolment Enrol(const std::string& log, const RecogniserConfig& config) {
   Enrolment enrolment;
   enrolment.head = config.RefinedHead();
   const HeadSurface start = enrolment.head.surface;
+  const FaceFrame finder(TheAdult());
   for (int k = 0; k < kReadings; ++k) {
     const Reading reading = Track(log, config, enrolment.head);
     const std::size_t views = reading.selection.Views(kMostViews).size();
@@ -83,11 +85,9 @@ Enrolment Enrol(const std::string& log, const RecogniserConfig& config) {
                                   " directions: let the person turn the head slowly to all sides");
     }
     const auto bundle = BundleOf(log, config, enrolment.head, reading);
-    for (int round = 0; round < kRounds; ++round) {
-      const HeadBundle::Agreement agreement = bundle->Round();
-      if (k == 0 && round == 0) enrolment.before = agreement;
-      enrolment.after = agreement;
-    }
+    const FaceBundle bundled = BundleFace(finder, kRounds, bundle.get());
+    if (k == 0) enrolment.before = bundled.first;
+    enrolment.after = bundled.last;
     enrolment.head = bundle->Enrolled();
     enrolment.frames = reading.frames;
     enrolment.tracked = reading.tracked;

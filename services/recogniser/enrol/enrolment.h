@@ -20,8 +20,8 @@ struct Enrolment {
 
 /// Learns the shape and the looks of the head that the stereo recording @p log shows, turning, at
 /// unknown poses. The recording is read three times: each time the head is tracked, as well as it
-/// is known by then, and views from all directions are bundled. The head's frame is the mean of
-/// what the generic face says in these views.
+/// is known by then, and views from all directions are bundled. The head's frame is where the face
+/// itself says (FaceFrame), as for heads that are learned on the way.
 /// @throws std::invalid_argument where the recording shows too little of a face; std::runtime_error
 /// where it cannot be read.
 Enrolment Enrol(const std::string& log, const RecogniserConfig& config);

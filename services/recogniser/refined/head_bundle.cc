@@ -21,7 +21,8 @@ constexpr double kOutside_m = 0.010, kOutsideRoughness_m = 0.0008;
 constexpr double kIndependence = 0.05, kOutlineIndependence = 0.3;
 constexpr float kStereoFacing = 0.75f;
 constexpr double kStereoIndependence = 1;
-constexpr float kStereoSigma = 0.06f;  ///< of brightness, that the eyes differ by: of the contrast
+/// What the eyes differ by, of the contrast.
+constexpr float kFineStereoSigma = 0.25f, kBrightnessStereoSigma = 0.06f;
 constexpr float kRelativeSigma = 0.35f, kNoise = 0.5f;  ///< as in the refiner: contrast, levels
 
 PixelBox Common(const PixelBox& a, const PixelBox& b) {
@@ -67,9 +68,11 @@ HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, WorkingPai
 }
 
 HeadBundle::HeadBundle(const RefinerConfig& config, const StereoRig& rig, double distance_m,
-                       const HeadGeometry& head, const std::array<ColorModel, 2>& colors)
+                       const HeadGeometry& head, const std::array<ColorModel, 2>& colors,
+                       Band compared)
     : config_(config),
       start_(head),
+      compared_(compared),
       start_table_(TableOf(head.surface, kShapeLevel)),
       pair_(rig, distance_m),
       colors_(colors),
@@ -180,12 +183,13 @@ void HeadBundle::AddStereoShape(const HeadView& view) {
   const Eigen::Matrix3f R_CM = view.X_CM.linear().cast<float>();
   FaceSamples right(points.size()), left(points.size());
   for (const std::size_t eye : {0, 1})
-    SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), kBrightness, kStereoFacing,
+    SampleFace(points, view_[eye], EyePose(pair_.eye(eye), view.X_CM), compared_, kStereoFacing,
                eye == 0 ? &right : &left);
   const GainOffset fit = FitEyes(right, left, points.size());
   if (fit.count < kFewestPoints) return;
   const auto gain = static_cast<float>(fit.gain), offset = static_cast<float>(fit.offset);
-  const float sigma = kStereoSigma * static_cast<float>(fit.pattern_rms) + kNoise;
+  const float relative_sigma = compared_ == kBrightness ? kBrightnessStereoSigma : kFineStereoSigma;
+  const float sigma = relative_sigma * static_cast<float>(fit.pattern_rms) + kNoise;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!right.seen[i] || !left.seen[i]) continue;
     const Eigen::Vector3f d = points.points[i].normalized();

@@ -33,9 +33,11 @@ HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, WorkingPai
 class HeadBundle {
  public:
   /// @p colors: how skin and hair look to the right and the left camera. @p distance_m: about
-  /// where the head is, for the working resolution.
+  /// where the head is, for the working resolution. @p compared: what both eyes should see alike on
+  /// the shape. kBrightness tells of it everywhere and makes it some millimetres too flat, as what
+  /// shines looks different to each eye; kFineBand does not, but needs views from all sides.
   HeadBundle(const RefinerConfig& config, const StereoRig& rig, double distance_m,
-             const HeadGeometry& head, const std::array<ColorModel, 2>& colors);
+             const HeadGeometry& head, const std::array<ColorModel, 2>& colors, Band compared);
 
   void Add(HeadView view) { views_.push_back(std::move(view)); }
   void Add(const StereoFrame& frame, const RigidTransform& X_CM) {
@@ -85,6 +87,7 @@ class HeadBundle {
 
   const RefinerConfig config_;
   const HeadGeometry start_;
+  const Band compared_;
   HeadTable start_table_;
   WorkingPair pair_;
   std::array<ColorModel, 2> colors_;

@@ -1,8 +1,8 @@
 #include "services/recogniser/refined/head_learner.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
+
+#include "services/recogniser/refined/face_bundle.h"
 
 namespace visavis {
 namespace {
@@ -11,8 +11,7 @@ constexpr int kFirstFrame = 10;  ///< with a track, at which learning begins, if
 constexpr int kFrames = 12, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
 constexpr int kLongest = 150;                    ///< frames after which one view more will do
-constexpr int kTurns = 2, kRounds = 2;           ///< of the bundle, each turn with a new frame
-constexpr double kWidely_rad = 0.35;             ///< between two of the views
+constexpr int kRounds = 2;                       ///< of the bundle, each turn
 
 }  // namespace
 
@@ -26,32 +25,16 @@ struct HeadLearner::Work {
   void Run() {
     if (!bundle) {
       finder = std::make_unique<FaceFrame>(TheAdult());
-      bundle = std::make_unique<HeadBundle>(config, rig, distance_m, start, colors);
+      bundle = std::make_unique<HeadBundle>(config, rig, distance_m, start, colors, kBrightness);
     }
     bundle->SetColors(colors);
     for (HeadView& view : new_views) bundle->Add(std::move(view));
     new_views.clear();
     const std::size_t last = bundle->num_views() - 1;
     const RigidTransform X_CN = bundle->pose(last);
-    for (int turn = 0; turn < kTurns; ++turn) {
-      if (IsSeenWidely()) bundle->Rebase();  // then nearness to the mean adult no longer counts
-      for (int round = 0; round < kRounds; ++round) bundle->Round();
-      const HeadGeometry head = bundle->Enrolled();
-      const FaceFrame::Found found = finder->Find(*head.face, head.surface);
-      bundle->MoveFrame(found.X_MN);
-      learned.likeness = found.likeness;
-    }
+    learned.likeness = BundleFace(*finder, kRounds, bundle.get()).likeness;
     learned.head = std::make_unique<PreparedHead>(config, bundle->Enrolled());
     learned.X_MN = bundle->pose(last).inverse() * X_CN;
-  }
-
-  bool IsSeenWidely() const {
-    double least = 1;  // cosine
-    for (std::size_t i = 0; i < bundle->num_views(); ++i) {
-      for (std::size_t k = 0; k < i; ++k)
-        least = std::min(least, TowardsCamera(bundle->pose(i)).dot(TowardsCamera(bundle->pose(k))));
-    }
-    return least < std::cos(kWidely_rad);
   }
 
   const RefinerConfig config;

@@ -98,8 +98,9 @@ class HeadBundleTest : public ::testing::Test {
     frame.left = scene_.picture(1);
     return frame;
   }
-  HeadBundle Bundle(const HeadGeometry& head) const {
-    return {RefinerConfig{}, TestRig(), kDistance_m, head, {scene_.colors(0), scene_.colors(1)}};
+  HeadBundle Bundle(const HeadGeometry& head, Band compared = kBrightness) const {
+    return {RefinerConfig{}, TestRig(), kDistance_m, head, {scene_.colors(0), scene_.colors(1)},
+            compared};
   }
   /// Shows all views to @p bundle, at poses that are some millimetres and degrees off.
   void ShowAll(HeadBundle* bundle) {
@@ -115,8 +116,11 @@ class HeadBundleTest : public ::testing::Test {
   MeshScene scene_;
 };
 
-TEST_F(HeadBundleTest, PosesShapeAndTextureComeToAgree) {
-  HeadBundle bundle = Bundle(OtherHead());
+class EitherBandTest : public HeadBundleTest, public ::testing::WithParamInterface<Band> {};
+INSTANTIATE_TEST_SUITE_P(Compared, EitherBandTest, ::testing::Values(kBrightness, kFineBand));
+
+TEST_P(EitherBandTest, PosesShapeAndTextureComeToAgree) {
+  HeadBundle bundle = Bundle(OtherHead(), GetParam());
   ShowAll(&bundle);
   ASSERT_EQ(bundle.num_views(), Views().size());
   const PoseErrors before = ErrorsOf(bundle);

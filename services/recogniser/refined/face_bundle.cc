@@ -1,0 +1,39 @@
+#include "services/recogniser/refined/face_bundle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace visavis {
+namespace {
+
+constexpr int kTurns = 2;
+constexpr double kWidely_rad = 0.35;  ///< between two of the views
+
+bool IsSeenWidely(const HeadBundle& bundle) {
+  double least = 1;  // cosine
+  for (std::size_t i = 0; i < bundle.num_views(); ++i) {
+    for (std::size_t k = 0; k < i; ++k)
+      least = std::min(least, TowardsCamera(bundle.pose(i)).dot(TowardsCamera(bundle.pose(k))));
+  }
+  return least < std::cos(kWidely_rad);
+}
+
+}  // namespace
+
+FaceBundle BundleFace(const FaceFrame& finder, int rounds, HeadBundle* bundle) {
+  FaceBundle result;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    if (IsSeenWidely(*bundle)) bundle->Rebase();  // then nearness to the mean adult counts no more
+    for (int round = 0; round < rounds; ++round) {
+      result.last = bundle->Round();
+      if (turn == 0 && round == 0) result.first = result.last;
+    }
+    const HeadGeometry head = bundle->Enrolled();
+    const FaceFrame::Found found = finder.Find(*head.face, head.surface);
+    bundle->MoveFrame(found.X_MN);
+    result.likeness = found.likeness;
+  }
+  return result;
+}
+
+}  // namespace visavis
