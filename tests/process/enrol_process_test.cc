@@ -1,5 +1,5 @@
-// visavis-enrol as its users start it: a simulated person is recorded, enrolled, and tracked in
-// another recording.
+// visavis-enrol as its users start it: a person is recorded, enrolled, and tracked in another
+// recording; simulated, and the sample that another renderer made.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -66,6 +66,34 @@ TEST(EnrolProcessTest, AnEnrolledPersonIsTrackedMoreExactlyInAnotherRecording) {
   };
   EXPECT_LT(rmse(enrolled, "position_mm", "norm"), 0.8 * rmse(generic, "position_mm", "norm"));
   EXPECT_LT(rmse(enrolled, "angle_deg", "total"), rmse(generic, "angle_deg", "total"));
+}
+
+// Ten poses, each change a jump: where a part of the face lies in the part of the picture that is
+// looked at first, it may look like another part.
+TEST(EnrolProcessTest, TheSampleEnrolledOnFiveViewsIsTrackedAndNeverWrongAfterAJump) {
+  const TemporaryFolder folder;
+  const std::string data = Environment("VISAVIS_SOURCE_DIR") + "/tests/data/";
+  const std::string views = folder / "views.lcm", jumps = folder / "jumps.lcm";
+  const std::string head = folder / "head.yaml", offset = folder / "offset.json";
+  RunWell({Program("log"), "import", data + "man_reference", views});
+  RunWell({Program("log"), "import", data + "man_static", jumps});
+  RunWell({Program("enrol"), views, "-o", head});
+  const auto replay = [&](const std::string& log, const std::string& to, int seed) {
+    RunWell({Program("recogniser"), "--replay", log, "--record", to, "--set",
+             "refined.head.file=" + head, "--set", "seed=" + std::to_string(seed)});
+  };
+  replay(views, folder / "views.run.lcm", 1);
+  RunWell({Program("evaluate"), folder / "views.run.lcm", "--fit-head-offset", offset});
+  for (const int seed : {1, 2, 3}) {
+    const std::string run = folder / "jumps.run.lcm";
+    replay(jumps, run, seed);
+    const auto figures = nlohmann::json::parse(
+        RunWell({Program("evaluate"), run, "--head-offset", offset, "--json", "-"}));
+    EXPECT_EQ(figures["share_tracking"], 1) << seed;
+    EXPECT_EQ(figures["aligned"]["share_false_tracking"], 0) << seed;
+    EXPECT_LT(figures["aligned"]["position_mm"]["norm"]["rmse"], 1.3) << seed;
+    EXPECT_LT(figures["aligned"]["angle_deg"]["total"]["rmse"], 0.8) << seed;
+  }
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ struct PixelBox {
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
   bool empty() const { return x1 <= x0 || y1 <= y0; }
+  bool Contains(const PixelBox& box) const {
+    return box.x0 >= x0 && box.y0 >= y0 && box.x1 <= x1 && box.y1 <= y1;
+  }
 };
 
 /// One camera as the refined estimator sees it: an ideal pinhole E (undistorted images).

@@ -158,6 +158,14 @@ void RefinedEstimator::BuildMaps(const RigidTransform* X_CM) {
   }
 }
 
+bool RefinedEstimator::IsMapped(const RigidTransform& X_CM) const {
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (view_[i].seen() && !scores_[i].box().Contains(pair().BoxAround(i, X_CM, kFaceRadius_m)))
+      return false;
+  }
+  return true;
+}
+
 // Fig. 3: the pose and all individuals are moved against the camera's motion.
 void RefinedEstimator::Feedforward(const CameraStep& step) {
   estimate_.feedforward = FeedforwardMode::kNone;
@@ -224,6 +232,15 @@ RefinedEstimator::Candidate RefinedEstimator::Track() {
   const Vector6d phi = PhiFromTransform(best.refined.X_CM);
   population_.Insert(phi, fitness(phi));
   return best;
+}
+
+// A part of a face can look like another: all of it must be looked at.
+RefinedEstimator::Candidate RefinedEstimator::Follow() {
+  const Candidate found = Track();
+  if (!IsPlausible(found.refined.X_CM) || IsMapped(found.refined.X_CM)) return found;
+  X_CM_ = found.refined.X_CM;
+  BuildMaps(&*X_CM_);
+  return Track();
 }
 
 std::optional<RefinedEstimator::Candidate> RefinedEstimator::WhereLost() {
@@ -295,9 +312,11 @@ const Estimate& RefinedEstimator::Process(const StereoFrame& frame, const Camera
   if (tracked) {
     timer->Enter(Stage::kRefinement);
     TakeLearned();
-    candidate_ = Track();
-    good = one_eye_in_a_row_ <= e.one_eye_frames &&
-           (texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_));
+    candidate_ = Follow();
+    good =
+        one_eye_in_a_row_ <= e.one_eye_frames &&
+        (texture_.learned() ? IsKnownFace(candidate_, e.keep_texture_ncc) : IsFace(candidate_)) &&
+        IsMapped(candidate_.refined.X_CM);
     if (!good) {
       timer->Enter(Stage::kMap);
       if (pair().is_doubled()) LookInto(range_);

@@ -77,11 +77,15 @@ class RefinedEstimator final : public Estimator {
   void TakePictures();
   /// Maps of the whole pictures, or of the part round @p X_CM.
   void BuildMaps(const RigidTransform* X_CM);
+  /// Whether all that the pictures show of a face at @p X_CM is in the maps.
+  bool IsMapped(const RigidTransform& X_CM) const;
   void Feedforward(const CameraStep& step);
   Candidate Scored(const Refined& refined) const;
   Candidate RefineFrom(const RigidTransform& X_CM, const FaceTexture* texture, int iterations,
                        int reach_px);
   Candidate Track();
+  /// The same from where the head is found, if that is partly outside of the maps.
+  Candidate Follow();
   /// Where the learned face was lost, if it is there again: from behind a hand.
   std::optional<Candidate> WhereLost();
   Candidate Search();

@@ -12,6 +12,7 @@
 namespace visavis {
 
 inline constexpr double kHeadRadius_m = 0.17;  ///< from M's origin: all of a head, and some more
+inline constexpr double kFaceRadius_m = 0.12;  ///< likewise: all of a face
 inline constexpr int kLeastBox_px = 32;        ///< a smaller part of a picture shows no head
 
 /// The stereo pair at the resolution that the refined estimator works at, about 0.8 px a mm on the
