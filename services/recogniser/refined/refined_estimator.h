@@ -102,6 +102,8 @@ class RefinedEstimator final : public Estimator {
   std::vector<RigidTransform> Places();
   std::vector<Vector6d> Niches() const;
   void RefineStarts(const std::vector<RigidTransform>& places);
+  /// The @p rough candidate refined, if it is the face that is looked for, beyond doubt.
+  std::optional<Candidate> SureFace(const Candidate& rough);
   std::vector<Eigen::Matrix3d> BestTurns(const Eigen::Vector3d& p_CM);
   void KeepPromising();
   void SortPlausible();

@@ -11,6 +11,8 @@ constexpr double kBeyond_rad = 0.1, kBeyond_m = 0.1;       ///< a head may leave
 constexpr double kBeyond = 0.08;                           ///< of its distance, likewise
 constexpr double kHeadInside = 0.3, kHeadOutside = -0.15;  ///< colours of a head
 constexpr double kPromisingOdds = 1;
+constexpr double kThere_m = 0.04, kThere_rad = 0.15;  ///< from where a face was seen last
+constexpr double kElsewhereDoubt = 0.6;               ///< of the texture's fit, if all is hidden
 
 }  // namespace
 
@@ -46,9 +48,16 @@ bool RefinedEstimator::IsKnownFace(const Candidate& c, double least_texture_ncc)
   return texture_.learned() && HasLooks(c, least_texture_ncc);
 }
 
+// Where the face was seen last, something may have come before it. Elsewhere what does not fit
+// speaks against the pose.
 bool RefinedEstimator::IsKnownAgain(const Candidate& c) const {
   const EvidenceConfig& e = settings_.refined.evidence;
-  return IsKnownFace(c, knows_enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc);
+  const double least = knows_enrolled() ? e.enrolled_texture_ncc : e.keep_texture_ncc;
+  const bool is_there =
+      known_X_CM_ &&
+      (c.refined.X_CM.translation() - known_X_CM_->translation()).norm() < kThere_m &&
+      LogRotation(c.refined.X_CM.linear().transpose() * known_X_CM_->linear()).norm() < kThere_rad;
+  return IsKnownFace(c, least + (is_there ? 0 : kElsewhereDoubt * c.refined.hidden));
 }
 
 bool RefinedEstimator::HasLooks(const Candidate& c, double least_texture_ncc) const {

@@ -23,6 +23,7 @@ constexpr std::ptrdiff_t kOfOnePlace = 3;  ///< neighbours among the promising
 constexpr std::size_t kPromising = 6;      ///< starts that are refined to the end
 constexpr std::size_t kVerified = 3;       ///< best places that are verified
 constexpr int kVerifyRounds = 2, kMoreRounds = 2;
+constexpr double kSureNcc = 0.9;       ///< of the learned texture: it is nowhere else
 constexpr double kLittleEffort = 0.3;  ///< less: no turned starts
 
 /// theta, psi [rad]: about kFar_rad apart, over all of @p space.
@@ -107,15 +108,23 @@ std::vector<Eigen::Matrix3d> RefinedEstimator::BestTurns(const Eigen::Vector3d& 
 }
 
 // Each place as found and turned as fits best: a few steps for all of them, the rest for the most
-// promising.
+// promising; of one that leaves no doubt at once.
 void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
   candidates_.clear();
   for (const RigidTransform& place : places) {
+    const auto first = static_cast<std::ptrdiff_t>(candidates_.size());
     std::vector<Eigen::Matrix3d> turns = BestTurns(place.translation());
     turns.push_back(place.linear());
     for (const Eigen::Matrix3d& R_CM : turns)
       candidates_.push_back(Scored(head().refiner.RefineRoughly(
           view_, MakeTransform(R_CM, place.translation()), kFirstReach_px)));
+    const auto best = std::max_element(
+        candidates_.begin() + first, candidates_.end(),
+        [](const Candidate& a, const Candidate& b) { return a.log_odds() < b.log_odds(); });
+    if (const auto sure = SureFace(*best)) {
+      candidates_ = {*sure};
+      return;
+    }
   }
   SortPlausible();
   KeepPromising();
@@ -124,6 +133,16 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
         RefineFrom(candidate.refined.X_CM, nullptr, settings_.refined.search_iterations, kReach_px);
   }
   SortPlausible();
+}
+
+std::optional<RefinedEstimator::Candidate> RefinedEstimator::SureFace(const Candidate& rough) {
+  if (!IsPlausible(rough.refined.X_CM) || !IsPromising(rough)) return {};
+  const int iterations = settings_.refined.search_iterations;
+  const Candidate face = RefineFrom(rough.refined.X_CM, nullptr, iterations, kReach_px);
+  if (!texture_.learned()) return IsClearFace(face) ? std::optional(face) : std::nullopt;
+  const Candidate known = RefineFrom(face.refined.X_CM, &texture_, iterations, kKnownReach_px);
+  const bool is_sure = IsKnownAgain(known) && known.refined.texture_ncc > kSureNcc;
+  return is_sure ? std::optional(face) : std::nullopt;
 }
 
 // What is plausible, most likely first; if nothing is, what there is.
