@@ -48,14 +48,15 @@ double Robust(float residual, float sigma) {
 
 }  // namespace
 
-HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, WorkingPair* pair) {
+HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, double radius_m,
+                WorkingPair* pair) {
   HeadView view;
   view.X_CM = X_CM;
   for (std::size_t i = 0; i < 2; ++i) {
     const auto picture = pair->Picture(frame, i);
     VISAVIS_THROW_UNLESS(picture.has_value(), i);
     HeadView::Crop& crop = view.crops[i];
-    crop.box = pair->BoxAround(i, X_CM, kHeadRadius_m);
+    crop.box = pair->BoxAround(i, X_CM, radius_m);
     crop.format = picture->format;
     const std::ptrdiff_t channels = BytesPerPixel(crop.format);
     for (int y = crop.box.y0; y < crop.box.y1; ++y) {
@@ -227,6 +228,7 @@ double HeadBundle::MoveSurface() {
 void HeadBundle::RebuildModel() {
   HeadTable table = start_table_;
   for (std::size_t i = 0; i < displaced_.size(); ++i) table.radii_m[i] += displaced_[i];
+  model_.reset();  // not two at once
   model_ = std::make_unique<Model>(config_, HeadGeometry{HeadSurface(start_.surface.shape(), table),
                                                          start_.p_MR_m, std::nullopt});
 }

@@ -23,8 +23,9 @@ struct HeadView {
   std::array<Crop, 2> crops;  ///< right, left
   RigidTransform X_CM;
 };
-/// Copies what @p frame, which must have both eyes, shows of a head at @p X_CM or near.
-HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, WorkingPair* pair);
+/// Copies what @p frame, which must have both eyes, shows within @p radius_m of a head at @p X_CM.
+HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, double radius_m,
+                WorkingPair* pair);
 
 /// Bundle adjustment of a head: the poses of many views of it, its shape and its texture are made
 /// to agree with all pictures at once. By turns: texture from the pictures under the poses; poses
@@ -41,7 +42,7 @@ class HeadBundle {
 
   void Add(HeadView view) { views_.push_back(std::move(view)); }
   void Add(const StereoFrame& frame, const RigidTransform& X_CM) {
-    Add(ViewOf(frame, X_CM, &pair_));
+    Add(ViewOf(frame, X_CM, kHeadRadius_m, &pair_));
   }
   void SetColors(const std::array<ColorModel, 2>& colors) { colors_ = colors; }
   std::size_t num_views() const { return views_.size(); }

@@ -11,7 +11,10 @@ constexpr int kFirstFrame = 10;  ///< with a track, at which learning begins, if
 constexpr int kFrames = 12, kFramesPerView = 1;  ///< that learning takes
 constexpr double kGrowth = 1.5;                  ///< views for views at which it is begun anew
 constexpr int kLongest = 150;                    ///< frames after which one view more will do
-constexpr int kRounds = 2;                       ///< of the bundle, each turn
+/// Of a head in its views, with what is beside its outline: they are most of what memory learning
+/// takes.
+constexpr double kRadius_m = 0.15;
+constexpr int kRounds = 2;  ///< of the bundle, each turn
 
 }  // namespace
 
@@ -77,7 +80,7 @@ void HeadLearner::Forget() {
 void HeadLearner::Add(const StereoFrame& frame, const RigidTransform& X_CM,
                       const std::array<ColorModel, 2>& colors) {
   if (begun_ >= 0 || num_views() >= most_views_ || !sides_.Take(X_CM)) return;
-  new_views_.push_back(ViewOf(frame, X_CM, &pair_));
+  new_views_.push_back(ViewOf(frame, X_CM, kRadius_m, &pair_));
   colors_ = colors;
 }
 

@@ -22,20 +22,26 @@ ShapeEquations::ShapeEquations(int level) : sphere_(level), neighbours_(sphere_.
 }
 
 void ShapeEquations::Clear() {
-  entries_.clear();
+  own_.assign(neighbours_.size(), 0.0);
+  with_neighbour_.resize(neighbours_.size());
+  for (std::size_t v = 0; v < neighbours_.size(); ++v)
+    with_neighbour_[v].assign(neighbours_[v].size(), 0.0);
   g_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(neighbours_.size()));
 }
 
 void ShapeEquations::Add(const Eigen::Vector3f& direction, double slope, double residual,
                          double weight) {
   const Icosphere::Place place = sphere_.Locate(direction);
-  for (int i = 0; i < 3; ++i) {
-    const int row = place.corners[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto v = static_cast<std::size_t>(place.corners[i]);
     const double wi = weight * slope * static_cast<double>(place.weights[i]);
-    g_[row] += wi * residual;
-    for (int j = 0; j < 3; ++j) {
-      entries_.emplace_back(row, place.corners[static_cast<std::size_t>(j)],
-                            wi * slope * static_cast<double>(place.weights[j]));
+    g_[place.corners[i]] += wi * residual;
+    own_[v] += wi * slope * static_cast<double>(place.weights[i]);
+    for (std::size_t k = 0; k < neighbours_[v].size(); ++k) {
+      for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
+        if (neighbours_[v][k] == place.corners[j])
+          with_neighbour_[v][k] += wi * slope * static_cast<double>(place.weights[j]);
+      }
     }
   }
 }
@@ -44,16 +50,20 @@ std::vector<float> ShapeEquations::Solve(const std::vector<float>& displaced,
                                          const Prior& prior) const {
   const auto n = static_cast<Eigen::Index>(neighbours_.size());
   VISAVIS_THROW_UNLESS(displaced.size() == neighbours_.size(), displaced.size());
-  std::vector<Eigen::Triplet<double>> laplacian;
+  std::vector<Eigen::Triplet<double>> laplacian, entries;
   for (std::size_t v = 0; v < neighbours_.size(); ++v) {
     const int row = static_cast<int>(v);
     laplacian.emplace_back(row, row, 1.0);
+    entries.emplace_back(row, row, own_[v]);
     const double share = 1.0 / static_cast<double>(neighbours_[v].size());
-    for (const int w : neighbours_[v]) laplacian.emplace_back(row, w, -share);
+    for (std::size_t k = 0; k < neighbours_[v].size(); ++k) {
+      laplacian.emplace_back(row, neighbours_[v][k], -share);
+      entries.emplace_back(row, neighbours_[v][k], with_neighbour_[v][k]);
+    }
   }
   SparseMatrix L(n, n), data(n, n);
   L.setFromTriplets(laplacian.begin(), laplacian.end());
-  data.setFromTriplets(entries_.begin(), entries_.end());
+  data.setFromTriplets(entries.begin(), entries.end());
   const Eigen::VectorXd rough = prior.roughness_m.cwiseAbs2().cwiseInverse();
   const SparseMatrix bending = L.transpose() * rough.asDiagonal() * L;
   SparseMatrix P = bending;

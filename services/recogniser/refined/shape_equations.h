@@ -35,7 +35,9 @@ class ShapeEquations {
  private:
   const Icosphere sphere_;
   std::vector<std::vector<int>> neighbours_;
-  std::vector<Eigen::Triplet<double>> entries_;
+  // Of the normal matrix: one entry a vertex, and one for each of its neighbours.
+  std::vector<double> own_;
+  std::vector<std::vector<double>> with_neighbour_;
   Eigen::VectorXd g_;
 };
 
