@@ -70,25 +70,27 @@ SampleReplays() {
     }' "$folder/figures"
 }
 
-# SampleReferences: the refined estimator, poses aligned by what it finds on the reference views
+# SampleReferences, after SampleReplays: the refined estimator, poses aligned by what it finds on the reference views
 # (man_reference: five views, 20 deg apart); from the generic head, and enrolled on these views.
 SampleReferences() {
-  local name logs=() head seed
-  for name in tests/data/man_reference tests/data/man_static "${sequences[@]}"; do
+  local name logs=(man_static.lcm) head seed
+  for name in tests/data/man_reference "${sequences[@]}"; do
     "$bin/visavis-log" import "$name" "$folder/${name##*/}.lcm" >/dev/null || return 1
-    [[ $name == */man_reference ]] || logs+=("${name##*/}.lcm")
+    [[ $name == tests/* ]] || logs+=("${name##*/}.lcm")
   done
   "$bin/visavis-enrol" "$folder/man_reference.lcm" -o "$folder/head.yaml" >&2 || return 1
   for head in generic enrolled; do
     for ((seed = 1; seed <= ${seeds:-3}; ++seed)); do
       (cd "$folder" && if [[ $head == enrolled ]]; then set -- --head head.yaml; else set --; fi &&
-        "$OLDPWD/$tests/refined_runs" "$@" "$seed" man_reference.lcm "${logs[@]}") |
+        "$OLDPWD/$tests/refined_runs" "$@" "${settings[@]}" "$seed" man_reference.lcm "${logs[@]}") |
         sed "s/[.]lcm//; s/^/$head /" || return 1
     done
   done >"$folder/runs"
   awk '
     { row = $2 ", " $1; if (!(row in n)) rows[++num_rows] = row
-      ++n[row]; tracking[row] += $4; wrong[row] += $5; mm[row] += $7; deg[row] += $8
+      ++n[row]; tracking[row] += $4; wrong[row] += $5
+      if ($7 == "-") next  # shorter than 2 s, or not TRACKING
+      ++measured[row]; mm[row] += $7; deg[row] += $8
       if ($7 > most_mm[row]) most_mm[row] = $7
       if ($8 > most_deg[row]) most_deg[row] = $8 }
     END {
@@ -96,8 +98,9 @@ SampleReferences() {
       print "|---|---|---|---|---|"
       for (i = 1; i <= num_rows; ++i) {
         row = rows[i]
-        printf "| %s | %.1f | %.2f | %.2f (%.2f) | %.2f (%.2f) |\n", row, tracking[row] / n[row], wrong[row] / n[row],
-          mm[row] / n[row], most_mm[row], deg[row] / n[row], most_deg[row]
+        m = measured[row]
+        errors = !m ? "- | -" : sprintf("%.2f (%.2f) | %.2f (%.2f)", mm[row] / m, most_mm[row], deg[row] / m, most_deg[row])
+        printf "| %s | %.1f | %.2f | %s |\n", row, tracking[row] / n[row], wrong[row] / n[row], errors
       }
     }' "$folder/runs"
 }

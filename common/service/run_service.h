@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <functional>
+#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -57,7 +58,7 @@ int RunService(int argc, char* argv[]) {
   const ServiceTraits traits = XService::Traits();
   try {
     const StopSignal stop;
-    const ServiceFlags flags = ParseServiceFlags(traits, argc, argv);
+    const ServiceFlags flags = ParseServiceFlags(traits, argc, argv, std::cout, std::cerr);
     if (flags.exit_now) return flags.exit_code;
     if constexpr (HasList<XService>::value) {
       if (flags.list) return PrintText(XService::List()), kExitOk;

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
-#include <iostream>
+#include <ostream>
 
 #include "common/bus/lcm_bus.h"
 #include "common/service/version.h"
@@ -29,7 +29,8 @@ bool IsPrefix(const std::string& text) {
 
 }  // namespace
 
-ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv[]) {
+ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv[],
+                               std::ostream& out, std::ostream& err) {
   ServiceFlags flags;
   CLI::App app(traits.description, "visavis-" + traits.name);
   app.set_version_flag("--version", "visavis-" + traits.name + " " + kVersion);
@@ -77,9 +78,9 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
     flags.exit_now = true;
     flags.exit_code = e.get_exit_code() == 0 ? kExitOk : kExitBadUsage;
     if (flags.exit_code == kExitOk) {
-      app.exit(e, std::cout, std::cerr);
+      app.exit(e, out, err);
     } else {
-      std::cerr << "visavis-" << traits.name << ": " << e.what() << " (--help shows the flags)\n";
+      err << "visavis-" << traits.name << ": " << e.what() << " (--help shows the flags)\n";
     }
     return flags;
   }
@@ -92,9 +93,9 @@ ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv
   if (flags.lcm_url.empty()) flags.lcm_url = kDefaultLcmUrl;
   if (prefix->count() == 0) flags.prefix = FromEnvironment("VISAVIS_PREFIX");
   if (!IsPrefix(flags.prefix)) {
-    std::cerr << "visavis-" << traits.name << ": "
-              << (prefix->count() > 0 ? "--prefix " : "VISAVIS_PREFIX=") << flags.prefix
-              << ": must be at most " << kMaxPrefixLength << " characters of A-Z, 0-9 and _\n";
+    err << "visavis-" << traits.name << ": "
+        << (prefix->count() > 0 ? "--prefix " : "VISAVIS_PREFIX=") << flags.prefix
+        << ": must be at most " << kMaxPrefixLength << " characters of A-Z, 0-9 and _\n";
     flags.exit_now = true;
     flags.exit_code = kExitBadUsage;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,13 @@ struct ServiceFlags {
   std::string replay;  ///< log to read; empty: live
   std::string record;  ///< log to write
 
-  bool exit_now{false};  ///< --help, --version or a bad flag: @p exit_code, after printing
+  bool exit_now{false};  ///< --help, --version or a bad flag: @p exit_code, after writing
   int exit_code{kExitOk};
 };
 
-/// Parses the flags of one service; prints help, version and what is wrong with a flag.
-ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv[]);
+/// Parses the flags of one service; writes help and version to @p out, what is wrong with a flag to
+/// @p err.
+ServiceFlags ParseServiceFlags(const ServiceTraits& traits, int argc, char* argv[],
+                               std::ostream& out, std::ostream& err);
 
 }  // namespace visavis

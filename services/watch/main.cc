@@ -43,7 +43,7 @@ int main(int argc, char* argv[]) {
     traits.description =
         "Prints one line a second: pose, error against truth, fitness, rate, latency";
     traits.has_config = false;
-    const auto flags = visavis::ParseServiceFlags(traits, argc, argv);
+    const auto flags = visavis::ParseServiceFlags(traits, argc, argv, std::cout, std::cerr);
     return flags.exit_now ? flags.exit_code : visavis::Watch(flags, stop);
   } catch (const std::exception& e) {
     std::cerr << "visavis-watch: " << e.what() << '\n';

@@ -70,7 +70,7 @@ int main(int argc, char* argv[]) {
     traits.name = "bus-watch";
     traits.description = "Prints a line for each message that a fleet's test looks at";
     traits.has_config = false;
-    const auto flags = visavis::ParseServiceFlags(traits, argc, argv);
+    const auto flags = visavis::ParseServiceFlags(traits, argc, argv, std::cout, std::cerr);
     return flags.exit_now ? flags.exit_code : visavis::Watch(flags, stop);
   } catch (const std::exception& e) {
     std::cerr << "bus-watch: " << e.what() << '\n';

@@ -102,8 +102,9 @@ class RefinedEstimator final : public Estimator {
   std::vector<RigidTransform> Places();
   std::vector<Vector6d> Niches() const;
   void RefineStarts(const std::vector<RigidTransform>& places);
-  /// The @p rough candidate refined, if it is the face that is looked for, beyond doubt.
-  std::optional<Candidate> SureFace(const Candidate& rough);
+  /// Refines @p rough where that is promising. @return whether it is, beyond doubt, the face that
+  /// is looked for.
+  bool IsSureFace(Candidate* rough);
   std::vector<Eigen::Matrix3d> BestTurns(const Eigen::Vector3d& p_CM);
   void KeepPromising();
   void SortPlausible();

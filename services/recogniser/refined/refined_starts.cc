@@ -121,8 +121,8 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
     const auto best = std::max_element(
         candidates_.begin() + first, candidates_.end(),
         [](const Candidate& a, const Candidate& b) { return a.log_odds() < b.log_odds(); });
-    if (const auto sure = SureFace(*best)) {
-      candidates_ = {*sure};
+    if (IsSureFace(&*best)) {
+      candidates_ = {Candidate(*best)};
       return;
     }
   }
@@ -135,14 +135,15 @@ void RefinedEstimator::RefineStarts(const std::vector<RigidTransform>& places) {
   SortPlausible();
 }
 
-std::optional<RefinedEstimator::Candidate> RefinedEstimator::SureFace(const Candidate& rough) {
-  if (!IsPlausible(rough.refined.X_CM) || !IsPromising(rough)) return {};
+bool RefinedEstimator::IsSureFace(Candidate* rough) {
+  if (!IsPlausible(rough->refined.X_CM) || !IsPromising(*rough)) return false;
   const int iterations = settings_.refined.search_iterations;
-  const Candidate face = RefineFrom(rough.refined.X_CM, nullptr, iterations, kReach_px);
-  if (!texture_.learned()) return IsClearFace(face) ? std::optional(face) : std::nullopt;
-  const Candidate known = RefineFrom(face.refined.X_CM, &texture_, iterations, kKnownReach_px);
-  const bool is_sure = IsKnownAgain(known) && known.refined.texture_ncc > kSureNcc;
-  return is_sure ? std::optional(face) : std::nullopt;
+  *rough = RefineFrom(rough->refined.X_CM, nullptr, iterations, kReach_px);
+  if (!texture_.learned()) return IsClearFace(*rough);
+  const Candidate known = RefineFrom(rough->refined.X_CM, &texture_, iterations, kKnownReach_px);
+  if (!IsKnownAgain(known) || known.refined.texture_ncc < kSureNcc) return false;
+  *rough = known;
+  return true;
 }
 
 // What is plausible, most likely first; if nothing is, what there is.

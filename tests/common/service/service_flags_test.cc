@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <sstream>
 
 #include "common/bus/lcm_bus.h"
 
@@ -11,7 +12,9 @@ namespace visavis {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
 
 class ServiceFlagsTest : public ::testing::Test {
  protected:
@@ -25,9 +28,12 @@ class ServiceFlagsTest : public ::testing::Test {
     args.insert(args.begin(), "visavis-echo");
     std::vector<char*> argv;
     for (auto& arg : args) argv.push_back(arg.data());
-    return ParseServiceFlags(traits_, static_cast<int>(argv.size()), argv.data());
+    out_.str("");
+    err_.str("");
+    return ParseServiceFlags(traits_, static_cast<int>(argv.size()), argv.data(), out_, err_);
   }
   ServiceTraits traits_;
+  std::ostringstream out_, err_;
 };
 
 TEST_F(ServiceFlagsTest, WithoutFlagsAServiceRunsLiveOnOurUrl) {
@@ -74,7 +80,19 @@ TEST_F(ServiceFlagsTest, FlagsThatMakeNoSenseTogetherAreBadUsage) {
     const ServiceFlags flags = Parse(args);
     EXPECT_TRUE(flags.exit_now) << args[0];
     EXPECT_EQ(flags.exit_code, kExitBadUsage) << args[0];
+    EXPECT_EQ(out_.str(), "");
+    EXPECT_THAT(err_.str(), MatchesRegex("visavis-echo: [^\n]+ \\(--help shows the flags\\)\n"));
   }
+}
+
+TEST_F(ServiceFlagsTest, HelpGoesToTheOutputAndABadPrefixIsOneLine) {
+  const ServiceFlags help = Parse({"--help"});
+  EXPECT_TRUE(help.exit_now);
+  EXPECT_EQ(help.exit_code, kExitOk);
+  EXPECT_THAT(out_.str(), HasSubstr("--replay"));
+  EXPECT_EQ(err_.str(), "");
+  EXPECT_EQ(Parse({"--prefix", "a b"}).exit_code, kExitBadUsage);
+  EXPECT_THAT(err_.str(), MatchesRegex("visavis-echo: --prefix a b: must be [^\n]+\n"));
 }
 
 TEST_F(ServiceFlagsTest, AListIsOfferedWhereThereIsOne) {

@@ -16,6 +16,13 @@ const Vector6d kPlace = PhiOf(40, -20, 1000, 4, -8, 5);
 
 double FrozenTime() { return 0; }
 
+/// FeaturedHead, covered from @p x_m in M on.
+Painter CoveredFrom(float x_m) {
+  return [x_m](const Eigen::Vector3f& p_M) {
+    return p_M.x() > x_m ? Color{120, 90, 200} : FeaturedHead(p_M);
+  };
+}
+
 /// A painted head before an estimator with the default settings.
 SearchSpace Shifted(SearchSpace space, const Eigen::Vector3d& by_m) {
   space.min.head<3>() += by_m;
@@ -148,10 +155,7 @@ TEST_F(RefinedEstimatorTest, AHeadThatLeavesIsLostAtOnceAndTrackedWhenItComesBac
 TEST_F(RefinedEstimatorTest, AFaceHalfCoveredIsTrackedAndSaidToBeLessSure) {
   for (int i = 0; i < 10; ++i) SeeHeadAt(kPlace);
   const Matrix6d free = *See().covariance;
-  const Painter half = [](const Eigen::Vector3f& p_M) {
-    return p_M.x() > 0.005f ? Color{120, 90, 200} : FeaturedHead(p_M);
-  };
-  const Estimate& covered = SeeHeadAt(kPlace, {}, half);
+  const Estimate& covered = SeeHeadAt(kPlace, {}, CoveredFrom(0.005f));
   ExpectTracked(covered, 6, 2.5);
   EXPECT_GT(std::sqrt((*covered.covariance)(2, 2)), 2 * std::sqrt(free(2, 2)));
 }
@@ -163,6 +167,23 @@ TEST_F(RefinedEstimatorTest, AFaceUncoveredWhereItWasLostIsTrackedAtOnceWithoutA
   const Estimate& estimate = SeeHeadAt(kPlace);
   ExpectTracked(estimate, 4, 2);
   EXPECT_EQ(estimate.evaluations, 0);
+}
+
+// What does not fit is excused by something before the face only where the face was seen last.
+TEST_F(RefinedEstimatorTest, AHalfCoveredFaceIsTakenUpWhereItWasLostAndElsewhereOnceItIsFree) {
+  const Vector6d elsewhere = kPlace + PhiOf(-150, 20, 20, 0, 10, 5);
+  const auto lose = [&] {
+    for (int i = 0; i < 10; ++i) SeeHeadAt(kPlace);
+    scene_.Show(TransformFromPhi(PhiOf(3000, 0, 1000, 0, 0, 0)), FeaturedHead);
+    ASSERT_EQ(See().status, TrackStatus::kLost);
+  };
+  const Painter covered = CoveredFrom(-0.005f);
+  lose();
+  EXPECT_EQ(SeeHeadAt(kPlace, {}, covered).status, TrackStatus::kTracking);
+  lose();
+  for (int i = 0; i < 5; ++i)
+    EXPECT_NE(SeeHeadAt(elsewhere, {}, covered).status, TrackStatus::kTracking) << i;
+  ExpectTracked(SeeHeadAt(elsewhere), 4, 2);
 }
 
 TEST_F(RefinedEstimatorTest, SwappedEyesAreNeverTracked) {
