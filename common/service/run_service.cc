@@ -89,6 +89,10 @@ int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags,
   return kExitOk;
 }
 
+ServiceFlags ReadFlags(const ServiceTraits& traits, int argc, char* argv[]) {
+  return ParseServiceFlags(traits, argc, argv, std::cout, std::cerr);
+}
+
 int ReportFailure(const ServiceTraits& traits, const std::exception& e, int exit_code) {
   std::cerr << "visavis-" << traits.name << ": " << e.what() << '\n';
   return exit_code;

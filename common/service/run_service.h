@@ -2,7 +2,6 @@
 
 #include <exception>
 #include <functional>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -27,6 +26,9 @@ using ServiceFactory = std::function<std::unique_ptr<Service>(const ServiceConte
 int RunServiceProcess(const ServiceTraits& traits, const ServiceFlags& flags,
                       const StopSignal& stop, const ServiceFactory& make_service,
                       Replay::Filter filter);
+
+/// ParseServiceFlags() with stdout and stderr.
+ServiceFlags ReadFlags(const ServiceTraits& traits, int argc, char* argv[]);
 
 /// Prints one line "visavis-NAME: what" to stderr and returns @p exit_code.
 int ReportFailure(const ServiceTraits& traits, const std::exception& e, int exit_code);
@@ -58,7 +60,7 @@ int RunService(int argc, char* argv[]) {
   const ServiceTraits traits = XService::Traits();
   try {
     const StopSignal stop;
-    const ServiceFlags flags = ParseServiceFlags(traits, argc, argv, std::cout, std::cerr);
+    const ServiceFlags flags = ReadFlags(traits, argc, argv);
     if (flags.exit_now) return flags.exit_code;
     if constexpr (HasList<XService>::value) {
       if (flags.list) return PrintText(XService::List()), kExitOk;
