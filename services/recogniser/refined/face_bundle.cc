@@ -29,7 +29,8 @@ FaceBundle BundleFace(const FaceFrame& finder, int rounds, HeadBundle* bundle) {
       if (turn == 0 && round == 0) result.first = result.last;
     }
     const HeadGeometry head = bundle->Enrolled();
-    const FaceFrame::Found found = finder.Find(*head.face, head.surface);
+    const FaceFrame::Found found = turn == 0 ? finder.Find(*head.face, head.surface)
+                                             : finder.FindNear(*head.face, head.surface);
     bundle->MoveFrame(found.X_MN);
     result.likeness = found.likeness;
   }

@@ -32,7 +32,8 @@ constexpr Kind kLooks{1, 2, 0.35};           ///< of what is known of a place
 
 constexpr double kLeastInformation = 1e-3;  ///< [1/rad^2]
 constexpr int kPerPoint = 4, kMostSteps = 12, kFewSteps = 3;
-constexpr std::size_t kBestStarts = 3;
+constexpr std::size_t kBestStarts = 3, kFewPoints = 3;  ///< of so many points one, at the start
+constexpr double kFewestPoints = 100;
 constexpr double kMoved_m = 5e-5, kTurned_rad = 5e-4;  ///< steps so small change nothing
 constexpr double kProbe_m = 5e-4, kProbe_rad = 6e-3;   ///< of the numeric derivative
 constexpr double kStartY_m = 0.010, kStartNod_rad = 0.13, kStartYaw_rad = 0.07;
@@ -106,17 +107,18 @@ std::vector<float> FaceFrame::RadiiOf(const HeadSurface& surface) const {
 }
 
 void FaceFrame::AddMirrored(Asked* asked, const RigidTransform& X_MN, double* misfits) const {
-  auto& [points, value, radii, looks, contrast, triangles] = *asked;
+  auto& [points, value, weight, radii, looks, contrast, triangles] = *asked;
   const Eigen::Isometry3f X(X_MN.matrix().cast<float>()), X_back = X.inverse();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3f p_M = X * points[i];
     const Vector3f mirrored = X_back * Vector3f(-p_M.x(), p_M.y(), p_M.z());
     const Icosphere::Place other_side = sphere_.LocateNear(mirrored, &triangles[i][0]);
     const float beyond = mirrored.norm() - Mean(radii, other_side);
-    misfits[2 * i] = kMirrorShape.Misfit(static_cast<double>(beyond));
+    misfits[2 * i] = weight * kMirrorShape.Misfit(static_cast<double>(beyond));
     if (!looks.Knows(other_side)) continue;
     const float other = Mean(looks.value, other_side);
-    misfits[2 * i + 1] = kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / contrast);
+    misfits[2 * i + 1] =
+        weight * kMirrorLooks.Misfit(static_cast<double>(other - value[i]) / contrast);
   }
 }
 
@@ -141,8 +143,9 @@ double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, doubl
       modes(n, k) = static_cast<double>(place.modes[static_cast<std::size_t>(k)]);
     ++n;
   }
-  if (n < 100) {
-    for (Eigen::Index i = 0; i < size; ++i) misfits[i] = kLooks.weight * kLooks.limit;
+  if (static_cast<double>(n) * asked.weight * asked.weight < kFewestPoints) {
+    for (Eigen::Index i = 0; i < size; ++i)
+      misfits[i] = asked.weight * kLooks.weight * kLooks.limit;
     return 0;
   }
   Eigen::VectorXd a = Eigen::VectorXd::Zero(kModes), off(n);
@@ -163,11 +166,13 @@ double FaceFrame::AddLooks(const Asked& asked, const RigidTransform& X_MN, doubl
     const Eigen::VectorXd root =
         (w.array() / (1 + off.array().square() * w.array() / (kLooks.limit * kLooks.limit)))
             .sqrt() *
-        kLooks.weight;
+        (asked.weight * kLooks.weight);
     a = Solve(root.asDiagonal() * modes.topRows(n), root.cwiseProduct(seen - mean.head(n)));
   }
-  for (Eigen::Index i = 0; i < n; ++i) misfits[i] = kLooks.Misfit(off[i] * std::sqrt(w[i]));
-  for (Eigen::Index i = n; i < size; ++i) misfits[i] = kLooks.weight;  // nothing is seen there
+  for (Eigen::Index i = 0; i < n; ++i)
+    misfits[i] = asked.weight * kLooks.Misfit(off[i] * std::sqrt(w[i]));
+  for (Eigen::Index i = n; i < size; ++i)
+    misfits[i] = asked.weight * kLooks.weight;  // nothing is seen there
   for (int k = 0; k < kModes; ++k) misfits[size + k] = a[k];
   return likeness;
 }
@@ -190,7 +195,7 @@ void FaceFrame::AddShape(Asked* asked, const RigidTransform& X_MN, double* misfi
       beyond[i] -= share * adult_radii_m_[place.corners[c]];
     }
   }
-  const double unit = kShape.weight / kShape.sigma;
+  const double unit = asked->weight * kShape.weight / kShape.sigma;
   Eigen::VectorXd c = Solve(unit * modes, unit * beyond);
   // Once more without what is far off.
   Eigen::VectorXd off = beyond - modes * c;
@@ -198,7 +203,7 @@ void FaceFrame::AddShape(Asked* asked, const RigidTransform& X_MN, double* misfi
       unit * (1 + (off.array() / (kShape.sigma * kShape.limit)).square()).sqrt().inverse();
   c = Solve(root.asDiagonal() * modes, root.cwiseProduct(beyond));
   off = beyond - modes * c;
-  for (Eigen::Index i = 0; i < size; ++i) misfits[i] = kShape.Misfit(off[i]);
+  for (Eigen::Index i = 0; i < size; ++i) misfits[i] = asked->weight * kShape.Misfit(off[i]);
   for (Eigen::Index k = 0; k < all.cols(); ++k) misfits[size + k] = c[k];
 }
 
@@ -238,50 +243,76 @@ RigidTransform FaceFrame::Refine(Asked* asked, const RigidTransform& X_start, in
   return X_MN;
 }
 
-FaceFrame::Found FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface) const {
+RigidTransform FaceFrame::BestOf(const std::vector<RigidTransform>& starts, Asked* few) const {
+  struct Start {
+    double badness;
+    RigidTransform X_MN;
+  };
+  std::vector<Start> all;
+  Eigen::VectorXd misfits;
+  for (const RigidTransform& X_MN : starts) {
+    Misfits(few, X_MN, &misfits);
+    all.push_back({misfits.squaredNorm(), X_MN});
+  }
+  const auto is_better = [](const Start& a, const Start& b) { return a.badness < b.badness; };
+  std::sort(all.begin(), all.end(), is_better);
+  all.resize(std::min(all.size(), kBestStarts));
+  for (Start& start : all) start.X_MN = Refine(few, start.X_MN, kFewSteps, &start.badness);
+  return std::min_element(all.begin(), all.end(), is_better)->X_MN;
+}
+
+FaceFrame::Found FaceFrame::FindFrom(const std::vector<RigidTransform>& starts,
+                                     const LearnedFace& face, const HeadSurface& surface) const {
   const std::vector<float>& value = face.value[kFineBand];
   double sum = 0;
   for (const float v : value) sum += static_cast<double>(v * v);
   if (!(sum > 0)) return {RigidTransform::Identity(), 0};
   const Looks looks = LooksOf(face.points, value);
   const std::vector<float> radii = RadiiOf(surface);
-  Asked asked{face.points,
-              value,
-              radii,
-              looks,
-              std::sqrt(sum / static_cast<double>(value.size())),
-              std::vector<std::array<std::size_t, 2>>(value.size())};
-  struct Start {
-    double badness;
-    RigidTransform X_MN;
+  const double contrast = std::sqrt(sum / static_cast<double>(value.size()));
+  const auto ask = [&](std::size_t every) {
+    Asked asked{{}, {}, std::sqrt(static_cast<double>(every)), radii, looks, contrast, {}};
+    for (std::size_t i = 0; i < value.size(); i += every) {
+      asked.points.push_back(face.points[i]);
+      asked.value.push_back(value[i]);
+    }
+    asked.triangles.resize(asked.points.size());
+    return asked;
   };
-  std::vector<Start> starts;
+  RigidTransform X_start = starts.front();
+  if (starts.size() > 1) {
+    Asked few = ask(kFewPoints);
+    X_start = BestOf(starts, &few);
+  }
+  Asked all = ask(1);
   Eigen::VectorXd misfits;
+  Misfits(&all, X_start, &misfits);
+  const double start_badness = misfits.squaredNorm();
+  double badness = 0;
+  Found found;
+  found.X_MN = Refine(&all, X_start, kMostSteps, &badness);
+  if (!(badness <= start_badness)) found.X_MN = X_start;
+  misfits.setZero(static_cast<Eigen::Index>(value.size()) + AdultLooks::kModes);
+  found.likeness = AddLooks(all, found.X_MN, misfits.data());
+  return found;
+}
+
+FaceFrame::Found FaceFrame::Find(const LearnedFace& face, const HeadSurface& surface) const {
+  std::vector<RigidTransform> starts;
   for (int i = -kStartsY; i <= kStartsY; ++i) {
     for (int j = -kStartsNod; j <= kStartsNod; ++j) {
       for (int k = -kStartsYaw; k <= kStartsYaw; ++k) {
-        const RigidTransform X_turn =
+        starts.push_back(
             MakeTransform(RotationFromAngles({0, kStartYaw_rad * k, kStartNod_rad * j}),
-                          Eigen::Vector3d(0, kStartY_m * i, 0));
-        Misfits(&asked, X_turn, &misfits);
-        starts.push_back({misfits.squaredNorm(), X_turn});
+                          Eigen::Vector3d(0, kStartY_m * i, 0)));
       }
     }
   }
-  std::sort(starts.begin(), starts.end(),
-            [](const Start& a, const Start& b) { return a.badness < b.badness; });
-  starts.resize(std::min(starts.size(), kBestStarts));
-  for (Start& start : starts) start.X_MN = Refine(&asked, start.X_MN, kFewSteps, &start.badness);
-  const Start& best =
-      *std::min_element(starts.begin(), starts.end(),
-                        [](const Start& a, const Start& b) { return a.badness < b.badness; });
-  double badness = 0;
-  Found found;
-  found.X_MN = Refine(&asked, best.X_MN, kMostSteps, &badness);
-  if (!(badness <= best.badness)) found.X_MN = best.X_MN;
-  misfits.setZero(static_cast<Eigen::Index>(value.size()) + AdultLooks::kModes);
-  found.likeness = AddLooks(asked, found.X_MN, misfits.data());
-  return found;
+  return FindFrom(starts, face, surface);
+}
+
+FaceFrame::Found FaceFrame::FindNear(const LearnedFace& face, const HeadSurface& surface) const {
+  return FindFrom({RigidTransform::Identity()}, face, surface);
 }
 
 }  // namespace visavis

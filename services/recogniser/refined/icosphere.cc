@@ -87,11 +87,8 @@ std::size_t Icosphere::Deepest(const std::vector<Planes>& planes, std::size_t be
   return best;
 }
 
-std::size_t Icosphere::Find(const Vector3f& d) const {
-  std::size_t at = Deepest(planes_[0], 0, planes_[0].size(), d);
-  for (std::size_t level = 1; level < triangles_.size(); ++level) {
-    at = Deepest(planes_[level], 4 * at, 4 * at + 4, d);
-  }
+std::size_t Icosphere::Descend(std::size_t level, std::size_t at, const Vector3f& d) const {
+  while (++level < triangles_.size()) at = Deepest(planes_[level], 4 * at, 4 * at + 4, d);
   return at;
 }
 
@@ -105,12 +102,22 @@ Icosphere::Place Icosphere::PlaceIn(std::size_t triangle, const Vector3f& d) con
 
 Icosphere::Place Icosphere::Locate(const Vector3f& direction) const {
   const Vector3f d = direction.normalized();
-  return PlaceIn(Find(d), d);
+  return PlaceIn(Descend(0, Deepest(planes_[0], 0, planes_[0].size(), d), d), d);
 }
 
+// Up from the triangle to the smallest that surely holds the direction, and down again.
 Icosphere::Place Icosphere::LocateNear(const Vector3f& direction, std::size_t* triangle) const {
   const Vector3f d = direction.normalized();
-  if (planes_.back()[*triangle].Shares(d).minCoeff() <= kSurelyInside) *triangle = Find(d);
+  std::size_t at = *triangle, level = planes_.size() - 1;
+  while (planes_[level][at].Shares(d).minCoeff() <= kSurelyInside) {
+    if (level == 0) {
+      at = Deepest(planes_[0], 0, planes_[0].size(), d);
+      break;
+    }
+    at /= 4;
+    --level;
+  }
+  *triangle = Descend(level, at, d);
   return PlaceIn(*triangle, d);
 }
 

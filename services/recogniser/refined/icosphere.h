@@ -32,7 +32,7 @@ class Icosphere {
     Eigen::Vector3f weights;
   };
   Place Locate(const Eigen::Vector3f& direction) const;
-  /// The same, sooner where it is in triangle number *@p triangle, which is then set to that found.
+  /// The same, sooner where it is near triangle number *@p triangle, which is set to that found.
   Place LocateNear(const Eigen::Vector3f& direction, std::size_t* triangle) const;
 
  private:
@@ -48,7 +48,9 @@ class Icosphere {
 
   void Subdivide();
   std::vector<Planes> PlanesOf(const std::vector<Triangle>& triangles) const;
-  std::size_t Find(const Eigen::Vector3f& unit_direction) const;
+  /// The smallest triangle round @p unit_direction within triangle @p at of @p level.
+  std::size_t Descend(std::size_t level, std::size_t at,
+                      const Eigen::Vector3f& unit_direction) const;
   Place PlaceIn(std::size_t triangle, const Eigen::Vector3f& unit_direction) const;
   std::size_t Deepest(const std::vector<Planes>& planes, std::size_t begin, std::size_t end,
                       const Eigen::Vector3f& direction) const;
