@@ -13,7 +13,8 @@
 namespace visavis {
 namespace {
 
-constexpr int kReadings = 3, kRounds = 4;  ///< of the bundle, each turn
+constexpr int kReadings = 3;
+constexpr int kTurns = 2, kRounds = 4;  ///< of the bundle in each; rounds in each turn
 constexpr std::size_t kMostViews = 60, kFewestViews = 3;
 
 double NoTime() { return 0; }
@@ -85,7 +86,7 @@ Enrolment Enrol(const std::string& log, const RecogniserConfig& config) {
                                   " directions: let the person turn the head slowly to all sides");
     }
     const auto bundle = BundleOf(log, config, enrolment.head, reading);
-    const FaceBundle bundled = BundleFace(finder, kRounds, bundle.get());
+    const FaceBundle bundled = BundleFace(finder, kTurns, kRounds, bundle.get());
     if (k == 0) enrolment.before = bundled.first;
     enrolment.after = bundled.last;
     enrolment.head = bundle->Enrolled();

@@ -6,7 +6,6 @@
 namespace visavis {
 namespace {
 
-constexpr int kTurns = 2;
 constexpr double kWidely_rad = 0.35;  ///< between two of the views
 
 bool IsSeenWidely(const HeadBundle& bundle) {
@@ -20,9 +19,9 @@ bool IsSeenWidely(const HeadBundle& bundle) {
 
 }  // namespace
 
-FaceBundle BundleFace(const FaceFrame& finder, int rounds, HeadBundle* bundle) {
+FaceBundle BundleFace(const FaceFrame& finder, int turns, int rounds, HeadBundle* bundle) {
   FaceBundle result;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int turn = 0; turn < turns; ++turn) {
     if (IsSeenWidely(*bundle)) bundle->Rebase();  // then nearness to the mean adult counts no more
     for (int round = 0; round < rounds; ++round) {
       result.last = bundle->Round();

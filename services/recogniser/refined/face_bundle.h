@@ -11,9 +11,9 @@ struct FaceBundle {
   double likeness{0};                 ///< of the face, as LooksFit's
 };
 
-/// Two turns of @p rounds of @p bundle each; after each the head's frame goes where the face says
+/// @p turns of @p rounds of @p bundle each; after each the head's frame goes where the face says
 /// that it is (FaceFrame). Once views are 20 deg apart, the shape that a turn begins with is its
 /// prior, not the one that the bundle began with.
-FaceBundle BundleFace(const FaceFrame& finder, int rounds, HeadBundle* bundle);
+FaceBundle BundleFace(const FaceFrame& finder, int turns, int rounds, HeadBundle* bundle);
 
 }  // namespace visavis

@@ -104,16 +104,16 @@ ImageView HeadBundle::Unfold(const HeadView::Crop& crop, std::size_t eye) {
   return picture;
 }
 
-void HeadBundle::Look(const HeadView& view) {
+void HeadBundle::Look(const HeadView& view, bool at_colors) {
   for (std::size_t i = 0; i < 2; ++i) {
     const HeadView::Crop& crop = view.crops[i];
     const PixelBox box = Common(pair_.BoxAround(i, view.X_CM, kHeadRadius_m), crop.box);
     view_[i] = {&pair_.eye(i), nullptr, nullptr};
     if (box.width() < kLeastBox_px || box.height() < kLeastBox_px) continue;
     const ImageView picture = Unfold(crop, i);
-    scores_[i].Build(picture, colors_[i], box);
+    if (at_colors) scores_[i].Build(picture, colors_[i], box);
     bands_[i].Build(picture, box);
-    view_[i] = {&pair_.eye(i), &scores_[i], &bands_[i]};
+    view_[i] = {&pair_.eye(i), at_colors ? &scores_[i] : nullptr, &bands_[i]};
   }
 }
 
@@ -121,7 +121,7 @@ void HeadBundle::LearnTexture() {
   FaceTexture& texture = model_->texture;
   texture.Forget();
   for (const HeadView& view : views_) {
-    Look(view);
+    Look(view, false);
     for (const Band band : {kFineBand, kCoarseBand}) {
       for (std::size_t eye = 0; eye < 2; ++eye) {
         if (!view_[eye].seen()) continue;
@@ -141,7 +141,7 @@ HeadGeometry HeadBundle::Enrolled() {
 HeadBundle::Agreement HeadBundle::RefinePoses() {
   Agreement sum;
   for (HeadView& view : views_) {
-    Look(view);
+    Look(view, true);
     const Refined refined =
         model_->faced.refiner.Refine(view_, view.X_CM, &model_->texture, kIterations, kReach_px);
     if (refined.X_CM.matrix().allFinite()) view.X_CM = refined.X_CM;
@@ -261,7 +261,7 @@ HeadBundle::Agreement HeadBundle::Round() {
   LearnTexture();
   shape_.Clear();
   for (const HeadView& view : views_) {
-    Look(view);
+    Look(view, true);
     for (const Band band : {kFineBand, kCoarseBand}) AddShape(view, band);
     AddStereoShape(view);
     AddOutline(view);

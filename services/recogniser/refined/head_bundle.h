@@ -77,7 +77,8 @@ class HeadBundle {
 
   /// The crop in its place in a picture that shows nothing else; valid until the next call.
   ImageView Unfold(const HeadView::Crop& crop, std::size_t eye);
-  void Look(const HeadView& view);
+  /// @p at_colors: at those of skin and hair too, not at brightness alone.
+  void Look(const HeadView& view, bool at_colors);
   void LearnTexture();
   Agreement RefinePoses();
   void AddShape(const HeadView& view, Band band);

@@ -14,7 +14,9 @@ constexpr int kLongest = 150;                    ///< frames after which one vie
 /// Of a head in its views, with what is beside its outline: they are most of what memory learning
 /// takes.
 constexpr double kRadius_m = 0.15;
-constexpr int kRounds = 2;  ///< of the bundle, each turn
+/// Of the bundle: the first of few views needs the face's frame twice, later ones begin where it
+/// was.
+constexpr int kFirstTurns = 2, kTurns = 1, kRounds = 2;
 
 }  // namespace
 
@@ -26,6 +28,7 @@ struct HeadLearner::Work {
         start(learner.start_) {}
 
   void Run() {
+    const int turns = bundle ? kTurns : kFirstTurns;
     if (!bundle) {
       finder = std::make_unique<FaceFrame>(TheAdult());
       bundle = std::make_unique<HeadBundle>(config, rig, distance_m, start, colors, kBrightness);
@@ -35,7 +38,7 @@ struct HeadLearner::Work {
     new_views.clear();
     const std::size_t last = bundle->num_views() - 1;
     const RigidTransform X_CN = bundle->pose(last);
-    learned.likeness = BundleFace(*finder, kRounds, bundle.get()).likeness;
+    learned.likeness = BundleFace(*finder, turns, kRounds, bundle.get()).likeness;
     learned.head = std::make_unique<PreparedHead>(config, bundle->Enrolled());
     learned.X_MN = bundle->pose(last).inverse() * X_CN;
   }

@@ -154,14 +154,14 @@ double MeshFitness::FoundIfWorth(const StereoView& view, const RigidTransform& X
                                  double worth) const {
   if (!view[0].seen() || !view[1].seen()) return Look(view, X_CM).found();
   StereoView one = view;
-  one[1].scores = nullptr;
+  one[1].Close();
   MeshScore right = Evaluate(one, X_CM);
   const double least = worth - kOneEyeMargin;
   if (right.total() + MeshScore::kAgreementWeight < least) return right.total();
   AddAgreement(view, PosesOf(view, X_CM), &right);
   if (right.found() < least) return right.found();
   one = view;
-  one[0].scores = nullptr;
+  one[0].Close();
   const MeshScore left = Evaluate(one, X_CM);
   MeshScore both = right;
   both.inside = 0.5 * (right.inside + left.inside);

@@ -8,13 +8,15 @@
 
 namespace visavis {
 
-/// What one eye shows of the current frame. Null pointers: that eye has no picture.
+/// What one eye shows of the current frame. Null pointers: that eye has no picture; no scores alone:
+/// only brightness was looked at.
 struct EyeView {
   const EyeGeometry* geometry{nullptr};
   const ScoreMap* scores{nullptr};
   const BandImages* bands{nullptr};
 
-  bool seen() const { return scores != nullptr; }
+  void Close() { scores = nullptr, bands = nullptr; }
+  bool seen() const { return bands != nullptr; }
 };
 
 /// Both eyes: right, left.

@@ -59,7 +59,7 @@ TEST_F(MeshFitnessTest, BothEyesAgreeAtTheTrueDepthAlone) {
 
 TEST_F(MeshFitnessTest, OneEyeHasNoneToAgreeWith) {
   StereoView one = view_;
-  one[1].scores = nullptr;
+  one[1].Close();
   EXPECT_EQ(fitness_.Look(one, TransformFromPhi(kTruth)).agreement, 0);
 }
 
@@ -136,8 +136,8 @@ TEST_F(MeshFitnessTest, AGrayPictureIsJudgedByItsLevelsAsByColours) {
 TEST_F(MeshFitnessTest, ScoresAreTheMeanOverTheEyesThatSee) {
   const StereoView both = view_;
   StereoView right = view_, left = view_, none = view_;
-  for (StereoView* view : {&left, &none}) (*view)[0].scores = nullptr;
-  for (StereoView* view : {&right, &none}) (*view)[1].scores = nullptr;
+  for (StereoView* view : {&left, &none}) (*view)[0].Close();
+  for (StereoView* view : {&right, &none}) (*view)[1].Close();
   const RigidTransform X_CM = TransformFromPhi(kTruth + PhiOf(5, 5, 0, 0, 0, 0));
   const MeshScore r = fitness_.Evaluate(right, X_CM), l = fitness_.Evaluate(left, X_CM);
   const MeshScore b = fitness_.Evaluate(both, X_CM), n = fitness_.Evaluate(none, X_CM);

@@ -90,8 +90,7 @@ TEST_F(PoseRefinerTest, ConvergesFromOtherPosesToo) {
 TEST_F(PoseRefinerTest, OneEyeMissingStillConverges) {
   for (std::size_t missing = 0; missing < 2; ++missing) {
     StereoView one = view_;
-    one[missing].scores = nullptr;
-    one[missing].bands = nullptr;
+    one[missing].Close();
     const Refined refined =
         refiner_.Refine(one, TransformFromPhi(kTruth + PhiOf(5, -5, 0, 2, 0, 0)), nullptr, 8, 9);
     const RecognitionError error = ErrorOf(refined);
@@ -103,7 +102,7 @@ TEST_F(PoseRefinerTest, OneEyeMissingStillConverges) {
 
 TEST_F(PoseRefinerTest, WithoutPicturesThePoseStays) {
   StereoView none = view_;
-  for (EyeView& eye : none) eye.scores = nullptr;
+  for (EyeView& eye : none) eye.Close();
   const Refined refined = refiner_.Refine(none, X_CM_, nullptr, 4, 9);
   EXPECT_TRUE(refined.X_CM.isApprox(X_CM_, 1e-12));
   EXPECT_EQ(refined.contour.count, 0);
