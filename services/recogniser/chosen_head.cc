@@ -78,6 +78,7 @@ HeadGeometry FileHead(const HeadChoice& choice) {
   options.y_up = choice.y_up;
   Vector3d p_M_of_mesh;
   HeadGeometry head = HeadFromMesh(LoadLabelledMesh(choice.file, options), &p_M_of_mesh);
+  head.is_measured = choice.measured;
   head.p_MR_m = AdultOrigin();
   if (choice.origin_m.empty()) return head;
   const Vector3d origin(choice.origin_m[0], choice.origin_m[1], choice.origin_m[2]);

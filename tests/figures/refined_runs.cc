@@ -2,7 +2,8 @@
 // each. Usage: refined_runs [--head head.yaml] [--set KEY=VALUE ...] SEED REFERENCE.lcm LOG.lcm ...
 //
 // The reference log serves for nothing but the head offset: where the truth's head frame lies in
-// the model's is a matter of definition, and constant for a subject. Columns: log; frames with the
+// the model's is a matter of definition, and constant for a subject. "-" for it: poses are compared
+// as they are told, as those of a person's own mesh can be. Columns: log; frames with the
 // head, TRACKING %, false TRACKING % (of all frames; above 30 mm or 10 deg aligned, or without a
 // head); first lock [frame]; over TRACKING frames after 2 s RMSE mm and deg, aligned by the
 // reference, then by the run itself; median and 99th percentile of the time of a frame [ms]; over
@@ -23,7 +24,7 @@
 #include "common/config/config_reader.h"
 #include "common/core/clock.h"
 #include "services/recogniser/background_thread.h"
-#include "services/recogniser/head_file.h"
+#include "services/recogniser/chosen_head.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
@@ -169,12 +170,11 @@ void PrintRow(const std::string& log, const std::vector<Frame>& frames,
 
 int main(int argc, char* argv[]) {
   std::vector<std::string> logs, sets;
-  std::string head_file;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     const bool is_flag = argument == "--head" || argument == "--set";
     if (is_flag && i + 1 < argc) {
-      argument == "--head" ? head_file = argv[++i] : sets.emplace_back(argv[++i]);
+      sets.emplace_back((argument == "--head" ? "refined.head.file=" : "") + std::string(argv[++i]));
     } else {
       logs.push_back(argument);
     }
@@ -187,11 +187,12 @@ int main(int argc, char* argv[]) {
     return 2;
   }
   try {
-    auto settings = visavis::LoadConfig<visavis::RecogniserConfig>("", sets).RefinedSettings();
+    const auto config = visavis::LoadConfig<visavis::RecogniserConfig>("", sets);
+    auto settings = config.RefinedSettings();
     settings.seed = static_cast<std::uint64_t>(std::max(0, std::atoi(logs[0].c_str())));
-    using visavis::HeadGeometry;
-    const HeadGeometry head = head_file.empty() ? HeadGeometry{} : visavis::LoadHeadFile(head_file);
-    const auto X_MT = visavis::OffsetOf(visavis::Run(logs[1], settings, head), 0);
+    const visavis::HeadGeometry head = visavis::ChosenHead(config.refined.head, config.head);
+    const auto X_MT = logs[1] == "-" ? visavis::RigidTransform::Identity()
+                                     : visavis::OffsetOf(visavis::Run(logs[1], settings, head), 0);
     for (std::size_t i = 2; i < logs.size(); ++i) {
       visavis::PrintRow(logs[i], visavis::Run(logs[i], settings, head), X_MT);
     }

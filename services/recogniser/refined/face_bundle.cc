@@ -30,7 +30,7 @@ FaceBundle BundleFace(const FaceFrame& finder, int turns, int rounds, HeadBundle
     const HeadGeometry head = bundle->Enrolled();
     const FaceFrame::Found found = turn == 0 ? finder.Find(*head.face, head.surface)
                                              : finder.FindNear(*head.face, head.surface);
-    bundle->MoveFrame(found.X_MN);
+    if (!head.is_measured) bundle->MoveFrame(found.X_MN);
     result.likeness = found.likeness;
   }
   return result;

@@ -12,8 +12,8 @@ struct FaceBundle {
 };
 
 /// @p turns of @p rounds of @p bundle each; after each the head's frame goes where the face says
-/// that it is (FaceFrame). Once views are 20 deg apart, the shape that a turn begins with is its
-/// prior, not the one that the bundle began with.
+/// that it is (FaceFrame), but for a measured head. Once views are 20 deg apart, the shape that a
+/// turn begins with is its prior, not the one that the bundle began with.
 FaceBundle BundleFace(const FaceFrame& finder, int turns, int rounds, HeadBundle* bundle);
 
 }  // namespace visavis

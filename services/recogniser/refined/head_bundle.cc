@@ -12,7 +12,8 @@ namespace {
 constexpr int kShapeLevel = 4;
 constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
-constexpr int kRadiusSteps = 4;  ///< of a fixed point iteration
+constexpr double kPlaced_m = 0.01, kPlaced_rad = 0.1;  ///< a step of a whole texture
+constexpr int kRadiusSteps = 4;                        ///< of a fixed point iteration
 constexpr float kMinFacing = 0.6f;
 // What the modes of adults' faces leave of a shape, where they tell of it and elsewhere.
 constexpr double kOwn_m = 0.001, kOwnRoughness_m = 0.0002;
@@ -229,8 +230,28 @@ void HeadBundle::RebuildModel() {
   HeadTable table = start_table_;
   for (std::size_t i = 0; i < displaced_.size(); ++i) table.radii_m[i] += displaced_[i];
   model_.reset();  // not two at once
-  model_ = std::make_unique<Model>(config_, HeadGeometry{HeadSurface(start_.surface.shape(), table),
-                                                         start_.p_MR_m, std::nullopt});
+  model_ = std::make_unique<Model>(
+      config_, HeadGeometry{HeadSurface(start_.surface.shape(), table), start_.p_MR_m, std::nullopt,
+                            start_.is_measured});
+}
+
+// All poses by the same step in M: what no texture that is learned under them can tell.
+double HeadBundle::MoveTexture() {
+  PoseEquations sum;
+  for (const HeadView& view : views_) {
+    Look(view, true);
+    const PoseEquations generic = model_->faced.refiner.Generic(view_, view.X_CM);
+    sum.H += generic.H;
+    sum.g += generic.g;
+  }
+  sum.H.diagonal().head<3>().array() += 1 / (kPlaced_m * kPlaced_m);
+  sum.H.diagonal().tail<3>().array() += 1 / (kPlaced_rad * kPlaced_rad);
+  const Vector6d step = sum.H.ldlt().solve(sum.g);
+  if (!step.allFinite()) return 0;
+  const RigidTransform X_MN =
+      MakeTransform(ExpRotation(step.tail<3>()), Eigen::Vector3d(step.head<3>()));
+  for (HeadView& view : views_) view.X_CM = view.X_CM * X_MN;
+  return step.head<3>().norm();
 }
 
 void HeadBundle::Rebase() {
@@ -258,6 +279,10 @@ void HeadBundle::MoveFrame(const RigidTransform& X_MN) {
 HeadBundle::Agreement HeadBundle::Round() {
   LearnTexture();
   Agreement agreement = RefinePoses();
+  if (start_.is_measured) {
+    agreement.moved_m = MoveTexture();
+    return agreement;
+  }
   LearnTexture();
   shape_.Clear();
   for (const HeadView& view : views_) {

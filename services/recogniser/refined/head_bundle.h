@@ -30,7 +30,8 @@ HeadView ViewOf(const StereoFrame& frame, const RigidTransform& X_CM, double rad
 /// Bundle adjustment of a head: the poses of many views of it, its shape and its texture are made
 /// to agree with all pictures at once. By turns: texture from the pictures under the poses; poses
 /// against texture and contours; shape, so that both eyes and all views see the same brightness at
-/// a point of the surface. The head's frame stays where the given poses put it in the mean.
+/// a point of the surface. The head's frame stays where the given poses put it in the mean. The
+/// surface of a measured head stays as it is: the texture is moved on it as a whole instead.
 class HeadBundle {
  public:
   /// @p colors: how skin and hair look to the right and the left camera. @p distance_m: about
@@ -53,7 +54,7 @@ class HeadBundle {
     double texture_ncc{0};  ///< pictures with the texture
     double stereo_ncc{0};   ///< both eyes' pictures
     double contour_px{0};   ///< rms distance of the contours
-    double moved_m{0};      ///< rms movement of the shape after all that
+    double moved_m{0};      ///< rms movement of the shape, or of the texture on it, after all that
   };
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
@@ -85,6 +86,7 @@ class HeadBundle {
   void AddStereoShape(const HeadView& view);
   void AddOutline(const HeadView& view);
   double MoveSurface();
+  double MoveTexture();
   void RebuildModel();
 
   const RefinerConfig config_;

@@ -18,6 +18,8 @@ struct HeadGeometry {
   Eigen::Vector3d p_MR_m{0, 0, 0};  ///< R's origin in M
   /// How an enrolled face looks. Its frame is fixed then, by these points; without, it is learned.
   std::optional<LearnedFace> face{};
+  /// Its surface is this very person's, measured: learning leaves it and its frame as they are.
+  bool is_measured{false};
 };
 
 /// Where the camera is, seen from a head at @p X_CM: unit vector in M.

@@ -35,6 +35,20 @@ constexpr double kOneEyeOutline = 0.05;
 // Depth comes from both eyes: outlines take a large head for a near one.
 constexpr double kAnchorStereo = 2;
 
+std::array<EyePose, 2> PosesIn(const StereoView& view, const RigidTransform& X_CM) {
+  return {EyePose(*view[0].geometry, X_CM), EyePose(*view[1].geometry, X_CM)};
+}
+
+/// Equations of a step in C about @p X_CM, told in M's axes.
+PoseEquations InHead(const PoseEquations& in_C, const RigidTransform& X_CM) {
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();
+  PoseEquations in_head;
+  in_head.H = R.transpose() * in_C.Full() * R;
+  in_head.g = R.transpose() * in_C.g;
+  return in_head;
+}
+
 }  // namespace
 
 PoseRefiner::PoseRefiner(const RefinerConfig& config, const HeadSurface& surface,
@@ -144,20 +158,14 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
 }
 
 PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform& X_CM) {
-  const std::array<EyePose, 2> poses = {EyePose(*view[0].geometry, X_CM),
-                                        EyePose(*view[1].geometry, X_CM)};
+  const std::array<EyePose, 2> poses = PosesIn(view, X_CM);
   PoseEquations equations;
   ContourFit ignored;
   Refined ignored_too;
   AddContours(view, poses, 6, config_.outline_weight, &equations, &ignored);
   AddGenericFace(view, poses, kFineBand, Looks::kFitted, kAnchorStereo * config_.stereo_weight,
                  &equations, &ignored_too);
-  Matrix6d R = Matrix6d::Zero();
-  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = X_CM.linear();
-  PoseEquations in_head;
-  in_head.H = R.transpose() * equations.Full() * R;
-  in_head.g = R.transpose() * equations.g;
-  return in_head;
+  return InHead(equations, X_CM);
 }
 
 // What a pose that is not right yet leaves unexplained looks like something before the face: so the
@@ -188,8 +196,7 @@ Refined PoseRefiner::Refine(const StereoView& view, const RigidTransform& X_CM,
     PoseEquations equations;
     equations.AddPrior(kPrior_m, kPrior_rad);
     refined.contour = {};
-    const std::array<EyePose, 2> poses = {EyePose(*view[0].geometry, refined.X_CM),
-                                          EyePose(*view[1].geometry, refined.X_CM)};
+    const std::array<EyePose, 2> poses = PosesIn(view, refined.X_CM);
     const int reach = i == 0 ? reach_px : i < kLastReachFrom ? std::min(reach_px, 6) : 4;
     const Band band = i < iterations / 2 && !near ? kCoarseBand : kFineBand;
     if (texture != nullptr) {

@@ -6,13 +6,19 @@ namespace {
 constexpr int kMeshLevel = 4, kCoarseMeshLevel = 3;
 constexpr double kFaceSpacing_m = 0.005;
 
+/// A shape found by bundling is least sure at its outline; a measured one is sure everywhere.
+RefinerConfig WeightsFor(const HeadGeometry& head, RefinerConfig config) {
+  if (head.is_measured) config.outline_weight_enrolled = config.outline_weight_with_texture;
+  return config;
+}
+
 }  // namespace
 
 FacedHead::FacedHead(const RefinerConfig& config, const HeadGeometry& geometry)
     : head(geometry),
       mesh(MeshOf(head.surface, kMeshLevel)),
       face(FacePointsOf(head.surface, kFaceSpacing_m)),
-      refiner(config, head.surface, mesh, face) {}
+      refiner(WeightsFor(head, config), head.surface, mesh, face) {}
 
 PreparedHead::PreparedHead(const RefinerConfig& config, const HeadGeometry& geometry)
     : PreparedHead(config, geometry, MeshOf(geometry.surface, kCoarseMeshLevel)) {}

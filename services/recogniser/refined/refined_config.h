@@ -49,6 +49,7 @@ struct HeadChoice {
     a->VisitFile("file", &file);
     a->Visit("scale", &scale, InRange(1e-9, 1e9));
     a->Visit("y_up", &y_up);
+    a->Visit("measured", &measured);
     a->Visit("origin_m", &origin_m);
     a->Visit("save", &save);
   }
@@ -58,6 +59,8 @@ struct HeadChoice {
   std::string file;
   double scale{1};  ///< of a mesh: metres per unit of the file
   bool y_up{true};  ///< of a mesh: the file's axes are x right, y up, z to the viewer; false: M's
+  /// Of a mesh: it is this very person's; learning keeps its shape and frame. false: about so.
+  bool measured{true};
   /// Of a mesh: origin of the frame that poses are reported in, in the scaled file's own axes.
   /// Empty: the generic adult's, from the eyes.
   std::vector<double> origin_m;
