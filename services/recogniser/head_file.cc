@@ -111,6 +111,7 @@ HeadGeometry LoadHeadFile(const std::string& filename) {
   const auto& o = file.origin_mm;
   HeadGeometry head{HeadSurface(shape, table), 1e-3 * Eigen::Vector3d(o[0], o[1], o[2])};
   if (!file.face_points_mm.empty()) head.face = FaceOf(file, head.surface);
+  head.is_measured = file.measured;
   return head;
 }
 
@@ -149,6 +150,7 @@ void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int lev
   file.hair_tilt_deg = static_cast<double>(shape.hair_tilt_rad) * 180 / M_PI;
   file.hair_offset_mm = Mm(shape.hair_offset);
   for (int i = 0; i < 3; ++i) file.origin_mm[static_cast<std::size_t>(i)] = 1e3 * head.p_MR_m[i];
+  file.measured = head.is_measured;
   const HeadTable table = TableOf(head.surface, level);
   for (const float radius : table.radii_m) file.radii_mm.push_back(Mm(radius));
   for (const float side : table.hair_side_m) file.hair_side_mm.push_back(Mm(side));

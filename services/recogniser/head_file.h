@@ -21,6 +21,7 @@ struct HeadFile {
     a->Visit("hair_tilt_deg", &hair_tilt_deg, InRange(-90.0, 90.0, "deg"));
     a->Visit("hair_offset_mm", &hair_offset_mm, InRange(-150.0, 150.0, "mm"));
     a->Visit("origin_mm", &origin_mm);
+    a->Visit("measured", &measured);
     a->Visit("radii_mm", &radii_mm);
     a->Visit("hair_side_mm", &hair_side_mm);
     a->Visit("face_points_mm", &face_points_mm);
@@ -34,6 +35,7 @@ struct HeadFile {
   double hair_tilt_deg{34};    ///< plane between hair and skin, where hair_side_mm is empty
   double hair_offset_mm{-29};  ///< hair where -y sin(tilt) + z cos(tilt) exceeds it
   std::vector<double> origin_mm{0, 0, 0};      ///< in M, of the frame that poses are reported in
+  bool measured{false};                        ///< HeadGeometry::is_measured
   std::vector<double> radii_mm;                ///< HeadTable::radii_m
   std::vector<double> hair_side_mm;            ///< HeadTable::hair_side_m, or empty
   std::vector<double> face_points_mm;          ///< LearnedFace: x y z of each point; or empty

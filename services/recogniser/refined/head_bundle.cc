@@ -12,8 +12,9 @@ namespace {
 constexpr int kShapeLevel = 4;
 constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
-constexpr double kPlaced_m = 0.01, kPlaced_rad = 0.1;  ///< a step of a whole texture
-constexpr int kRadiusSteps = 4;                        ///< of a fixed point iteration
+constexpr int kMostSteps = 2;  ///< of a whole texture
+constexpr double kStep_m = 0.01, kStep_rad = 0.1, kAtRest_m = 1e-4, kAtRest_rad = 1e-3;
+constexpr int kRadiusSteps = 4;  ///< of a fixed point iteration
 constexpr float kMinFacing = 0.6f;
 // What the modes of adults' faces leave of a shape, where they tell of it and elsewhere.
 constexpr double kOwn_m = 0.001, kOwnRoughness_m = 0.0002;
@@ -235,23 +236,27 @@ void HeadBundle::RebuildModel() {
                             start_.is_measured});
 }
 
-// All poses by the same step in M: what no texture that is learned under them can tell.
+// All poses by the same steps in M: what no texture that is learned under them can tell.
 double HeadBundle::MoveTexture() {
-  PoseEquations sum;
-  for (const HeadView& view : views_) {
-    Look(view, true);
-    const PoseEquations generic = model_->faced.refiner.Generic(view_, view.X_CM);
-    sum.H += generic.H;
-    sum.g += generic.g;
+  double moved_m = 0;
+  for (int k = 0; k < kMostSteps; ++k) {
+    PoseEquations sum;
+    for (const HeadView& view : views_) {
+      Look(view, true);
+      const PoseEquations generic = model_->faced.refiner.Generic(view_, view.X_CM);
+      sum.H += generic.H;
+      sum.g += generic.g;
+    }
+    sum.AddPrior(kStep_m, kStep_rad);
+    const Vector6d step = sum.H.ldlt().solve(sum.g);
+    if (!step.allFinite()) break;
+    const RigidTransform X_MN =
+        MakeTransform(ExpRotation(step.tail<3>()), Eigen::Vector3d(step.head<3>()));
+    for (HeadView& view : views_) view.X_CM = view.X_CM * X_MN;
+    moved_m += step.head<3>().norm();
+    if (step.head<3>().norm() < kAtRest_m && step.tail<3>().norm() < kAtRest_rad) break;
   }
-  sum.H.diagonal().head<3>().array() += 1 / (kPlaced_m * kPlaced_m);
-  sum.H.diagonal().tail<3>().array() += 1 / (kPlaced_rad * kPlaced_rad);
-  const Vector6d step = sum.H.ldlt().solve(sum.g);
-  if (!step.allFinite()) return 0;
-  const RigidTransform X_MN =
-      MakeTransform(ExpRotation(step.tail<3>()), Eigen::Vector3d(step.head<3>()));
-  for (HeadView& view : views_) view.X_CM = view.X_CM * X_MN;
-  return step.head<3>().norm();
+  return moved_m;
 }
 
 void HeadBundle::Rebase() {

@@ -113,6 +113,15 @@ TEST_F(HeadOfFileTest, PosesAreToldFromTheFilesOrigin) {
   EXPECT_LT((ChosenHead(choice, {}).p_MR_m - Vector3d(0, 0.01, 0)).norm(), 0.003);
 }
 
+TEST_F(HeadOfFileTest, AMeshIsThePersonsOwnUnlessToldOtherwise) {
+  HeadChoice choice;
+  EXPECT_FALSE(ChosenHead(choice, {}).is_measured);
+  choice.file = WriteHeadObj(folder_.path(), TheAdult().surface, HeadObj{});
+  EXPECT_TRUE(ChosenHead(choice, {}).is_measured);
+  choice.measured = false;
+  EXPECT_FALSE(ChosenHead(choice, {}).is_measured);
+}
+
 TEST_F(HeadOfFileTest, AYamlFileIsAHeadOfRadii) {
   HeadShape shape;
   shape.mouth_y = 0.08f;

@@ -43,6 +43,7 @@ TEST_F(HeadFileTest, AHeadThatWasWrittenIsReadBackToAThousandthOfAMillimetre) {
                           {0.001, -0.02, 0.003}};
   SaveHeadFile(name_, head);
   const HeadGeometry read = LoadHeadFile(name_);
+  EXPECT_FALSE(read.is_measured);
   EXPECT_NEAR(read.surface.shape().eye_y, 0.015f, 1e-6f);
   EXPECT_NEAR(read.surface.shape().mouth_y, 0.079f, 1e-6f);
   EXPECT_LT((read.p_MR_m - head.p_MR_m).norm(), 1e-9);
@@ -52,6 +53,11 @@ TEST_F(HeadFileTest, AHeadThatWasWrittenIsReadBackToAThousandthOfAMillimetre) {
     EXPECT_NEAR(read.surface.Radius(d), r, 1e-6f);
     EXPECT_NEAR(read.surface.HairSide(r * d), head.surface.HairSide(r * d), 1e-6f);
   }
+}
+
+TEST_F(HeadFileTest, AMeasuredHeadStaysOne) {
+  SaveHeadFile(name_, {TheAdult().surface, {0, 0, 0}, std::nullopt, true});
+  EXPECT_TRUE(LoadHeadFile(name_).is_measured);
 }
 
 TEST_F(HeadFileTest, RadiiAloneAreEnough) {

@@ -13,6 +13,7 @@ namespace visavis {
 namespace {
 
 using Eigen::Vector3d;
+using Eigen::Vector3f;
 
 constexpr double kDistance_m = 1;
 constexpr int kRounds = 8;
@@ -73,9 +74,9 @@ PoseErrors ErrorsOf(const HeadBundle& bundle) {
 /// rms distance [m] of the face of @p head, its frame at @p offset, from the painted surface.
 double ShapeError(const HeadGeometry& head, const RigidTransform& offset) {
   double sum = 0;
-  for (const Eigen::Vector3f& p : SharedAdultHead().face.points) {
+  for (const Vector3f& p : SharedAdultHead().face.points) {
     const Vector3d on_head = head.surface.Onto(p).cast<double>();
-    const Eigen::Vector3f painted = (offset * on_head).cast<float>();
+    const Vector3f painted = (offset * on_head).cast<float>();
     const float beyond = painted.norm() - SharedAdultHead().surface.Radius(painted.normalized());
     sum += static_cast<double>(beyond * beyond);
   }
@@ -83,7 +84,7 @@ double ShapeError(const HeadGeometry& head, const RigidTransform& offset) {
 }
 
 /// FeaturedHead's features on a skin of stronger grain.
-Color Speckled(const Eigen::Vector3f& p_M) {
+Color Speckled(const Vector3f& p_M) {
   const Color featured = FeaturedHead(p_M);
   return featured[0] < 150 ? featured : GrainyHead(p_M);
 }
@@ -162,7 +163,7 @@ TEST_F(HeadBundleTest, TheEnrolledHeadHasAFaceOnItsSurfaceThatAViewNotGivenShows
   const HeadGeometry head = bundle.Enrolled();
   ASSERT_TRUE(head.face);
   EXPECT_GT(head.face->points.size(), 400u);
-  for (const Eigen::Vector3f& p : head.face->points) {
+  for (const Vector3f& p : head.face->points) {
     EXPECT_NEAR(p.norm(), head.surface.Radius(p.normalized()), 2e-6);
   }
   PreparedHead prepared(RefinerConfig{}, head);
@@ -193,9 +194,9 @@ TEST_F(HeadBundleTest, AMovedFrameMovesPosesAndShapeAlike) {
   const HeadSurface surface = bundle.Enrolled().surface;
   double sum = 0, sum_unmoved = 0;
   const auto square = [](float x) { return static_cast<double>(x * x); };
-  for (const Eigen::Vector3f& p : SharedAdultHead().face.points) {
-    const Eigen::Vector3f on_N = surface_N.Onto(p);
-    const Eigen::Vector3f on_M = (X_MN * on_N.cast<double>()).cast<float>();
+  for (const Vector3f& p : SharedAdultHead().face.points) {
+    const Vector3f on_N = surface_N.Onto(p);
+    const Vector3f on_M = (X_MN * on_N.cast<double>()).cast<float>();
     sum += square(on_M.norm() - surface.Radius(on_M.normalized()));
     sum_unmoved += square(on_M.norm() - surface_N.Radius(on_M.normalized()));
   }
@@ -203,6 +204,31 @@ TEST_F(HeadBundleTest, AMovedFrameMovesPosesAndShapeAlike) {
   const auto n = static_cast<double>(SharedAdultHead().face.size());
   EXPECT_LT(std::sqrt(sum / n), 4e-4);
   EXPECT_GT(std::sqrt(sum_unmoved / n), 1.5e-3);
+}
+
+TEST_F(HeadBundleTest, AMeasuredSurfaceStaysAndItsTextureMovesToWhereItBelongs) {
+  const RigidTransform X_off =
+      MakeTransform(ExpRotation({0.03, -0.02, 0.02}), Vector3d(0.003, -0.004, 0.002));
+  const auto after_rounds = [&](bool is_measured, HeadGeometry* enrolled) {
+    HeadGeometry head{SharedAdultHead().surface};
+    head.is_measured = is_measured;
+    HeadBundle bundle = Bundle(head);
+    for (const Vector6d& phi : Views()) {
+      scene_.Show(TransformFromPhi(phi), Speckled);
+      bundle.Add(Frame(), TransformFromPhi(phi) * X_off);
+    }
+    for (int i = 0; i < kRounds; ++i) bundle.Round();
+    *enrolled = bundle.Enrolled();
+    return ErrorsOf(bundle);
+  };
+  HeadGeometry kept, moved;
+  const PoseErrors measured = after_rounds(true, &kept), free = after_rounds(false, &moved);
+  EXPECT_LT(measured.offset.translation().norm(), 0.001);
+  EXPECT_LT(LogRotation(measured.offset.linear()).norm(), 0.01);
+  EXPECT_GT(LogRotation(free.offset.linear()).norm(), 0.02);
+  EXPECT_TRUE(kept.is_measured);
+  for (const Vector3f& p : SharedAdultHead().face.points)
+    EXPECT_EQ(kept.surface.Radius(p), SharedAdultHead().surface.Radius(p));
 }
 
 TEST_F(HeadBundleTest, TheSameViewsGiveTheSameHeadBitForBit) {
