@@ -68,6 +68,24 @@ TEST(EnrolProcessTest, AnEnrolledPersonIsTrackedMoreExactlyInAnotherRecording) {
   EXPECT_LT(rmse(enrolled, "angle_deg", "total"), rmse(generic, "angle_deg", "total"));
 }
 
+TEST(EnrolProcessTest, APersonsOwnMeshIsTrackedInItsOwnFrameWithoutAnOffset) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder / "head.obj", head = folder / "head.yaml";
+  const std::string other = folder / "other.lcm", run = folder / "run.lcm";
+  RunWell({Program("simulator"), "--subject", "adult_a", "--export-mesh", mesh});
+  Simulate(folder / "first.lcm", 2, 0.33, 1);
+  Simulate(other, 4, 0.5, 2);
+  const std::string origin = "refined.head.origin_m=[0, 0, 0]";
+  RunWell({Program("enrol"), folder / "first.lcm", "-o", head, "--set", "refined.head.file=" + mesh,
+           "--set", origin});
+  RunWell({Program("recogniser"), "--replay", other, "--record", run, "--set",
+           "refined.head.file=" + head});
+  const auto as_told = nlohmann::json::parse(RunWell({Program("evaluate"), run, "--json", "-"}));
+  EXPECT_GE(as_told["share_tracking"], 0.9);
+  EXPECT_LT(as_told["raw"]["position_mm"]["norm"]["rmse"], 1);
+  EXPECT_LT(as_told["raw"]["angle_deg"]["total"]["rmse"], 1);
+}
+
 // Ten poses, each change a jump: where a part of the face lies in the part of the picture that is
 // looked at first, it may look like another part.
 TEST(EnrolProcessTest, TheSampleEnrolledOnFiveViewsIsTrackedAndNeverWrongAfterAJump) {
