@@ -12,6 +12,7 @@ namespace visavis {
 namespace {
 
 double Mm(float metres) { return std::round(1e6 * static_cast<double>(metres)) / 1e3; }
+constexpr int kLevel = 4, kMeasuredLevel = 5;  ///< of the icosphere: learned, from a mesh
 constexpr std::size_t kFewestFacePoints = 100, kMostFacePoints = 5000;
 constexpr double kFarthest_mm = 400, kBrightest = 255;
 
@@ -139,7 +140,7 @@ void RequireReadable(const std::string& filename, HeadFile file) {
 
 }  // namespace
 
-void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int level) {
+void SaveHeadFile(const std::string& filename, const HeadGeometry& head) {
   const HeadShape& shape = head.surface.shape();
   HeadFile file;
   file.eye_x_mm = Mm(shape.eye_x);
@@ -151,7 +152,7 @@ void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int lev
   file.hair_offset_mm = Mm(shape.hair_offset);
   for (int i = 0; i < 3; ++i) file.origin_mm[static_cast<std::size_t>(i)] = 1e3 * head.p_MR_m[i];
   file.measured = head.is_measured;
-  const HeadTable table = TableOf(head.surface, level);
+  const HeadTable table = TableOf(head.surface, head.is_measured ? kMeasuredLevel : kLevel);
   for (const float radius : table.radii_m) file.radii_mm.push_back(Mm(radius));
   for (const float side : table.hair_side_m) file.hair_side_mm.push_back(Mm(side));
   if (head.face) {

@@ -45,9 +45,9 @@ struct HeadFile {
 /// @throws ConfigError: one line with file, line, key, value and rule.
 HeadGeometry LoadHeadFile(const std::string& filename);
 
-/// What LoadHeadFile reads back: @p head at the icosphere's @p level (4: 2562 radii), to 0.001 mm.
+/// What LoadHeadFile reads back: @p head by 2562 radii, a measured one by 10242, to 0.001 mm.
 /// @throws std::invalid_argument naming file, key, value and rule where LoadHeadFile would refuse
 /// it, and the file is not touched; std::runtime_error naming a file that cannot be written.
-void SaveHeadFile(const std::string& filename, const HeadGeometry& head, int level = 4);
+void SaveHeadFile(const std::string& filename, const HeadGeometry& head);
 
 }  // namespace visavis

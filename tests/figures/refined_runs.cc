@@ -24,7 +24,6 @@
 #include "common/config/config_reader.h"
 #include "common/core/clock.h"
 #include "services/recogniser/background_thread.h"
-#include "services/recogniser/chosen_head.h"
 #include "services/recogniser/log_player.h"
 #include "services/recogniser/recogniser_config.h"
 #include "services/recogniser/refined/refined_estimator.h"
@@ -190,7 +189,7 @@ int main(int argc, char* argv[]) {
     const auto config = visavis::LoadConfig<visavis::RecogniserConfig>("", sets);
     auto settings = config.RefinedSettings();
     settings.seed = static_cast<std::uint64_t>(std::max(0, std::atoi(logs[0].c_str())));
-    const visavis::HeadGeometry head = visavis::ChosenHead(config.refined.head, config.head);
+    const visavis::HeadGeometry head = config.RefinedHead();
     const auto X_MT = logs[1] == "-" ? visavis::RigidTransform::Identity()
                                      : visavis::OffsetOf(visavis::Run(logs[1], settings, head), 0);
     for (std::size_t i = 2; i < logs.size(); ++i) {

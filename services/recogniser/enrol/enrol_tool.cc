@@ -38,7 +38,7 @@ std::string Report(const Arguments& arguments, const Enrolment& e) {
                e.tracked, e.frames, kDeg * e.range.min_yaw, kDeg * e.range.max_yaw);
   text += line("vertical and from %.0f to %.0f deg up and down", kDeg * e.range.min_pitch,
                kDeg * e.range.max_pitch);
-  text += line("pictures agree with the texture %.3f (generic shape: %.3f), both eyes",
+  text += line("pictures agree with the texture %.3f (at first %.3f), both eyes",
                e.after.texture_ncc, e.before.texture_ncc);
   text += line("%.3f (%.3f), outlines to %.2f px (%.2f px); the face's surface moved %.1f mm",
                e.after.stereo_ncc, e.before.stereo_ncc, e.after.contour_px, e.before.contour_px,
@@ -73,7 +73,8 @@ void RequireWritable(const Arguments& arguments) {
 
 int RunEnrolTool(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   CLI::App app(
-      "Learns a person's head from a short stereo recording in which it turns to all sides.",
+      "Learns a person's head from a short stereo recording in which it turns to all sides; where "
+      "refined.head.file is the person's own mesh, its looks alone.",
       "visavis-enrol");
   Arguments arguments;
   app.add_option("LOG", arguments.log,

@@ -115,6 +115,7 @@ void ContourTerm::KeepOutermost() {
 
 void ContourTerm::Measure(const EyeView& eye, const KernelEye& kernel_eye, int reach,
                           PoseEquations* equations, ContourFit* fit) {
+  VISAVIS_THROW_UNLESS(eye.scores != nullptr, reach);
   points_.Pad();
   MeasureContours(kernel_eye, eye.scores->view(), points_, reach, likelihoods_, &rows_);
   EquationSums sums;

@@ -28,8 +28,10 @@ FaceBundle BundleFace(const FaceFrame& finder, int turns, int rounds, HeadBundle
       if (turn == 0 && round == 0) result.first = result.last;
     }
     const HeadGeometry head = bundle->Enrolled();
-    const FaceFrame::Found found = turn == 0 ? finder.Find(*head.face, head.surface)
-                                             : finder.FindNear(*head.face, head.surface);
+    // A measured head keeps its frame: asked is only how like a face it is about there.
+    const FaceFrame::Found found = turn == 0 && !head.is_measured
+                                       ? finder.Find(*head.face, head.surface)
+                                       : finder.FindNear(*head.face, head.surface);
     if (!head.is_measured) bundle->MoveFrame(found.X_MN);
     result.likeness = found.likeness;
   }

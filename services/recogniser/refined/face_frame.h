@@ -25,7 +25,7 @@ class FaceFrame {
   /// M in the frame N in which @p face and @p surface are given; it may be turned from N by some
   /// 15 deg and lie 30 mm away.
   Found Find(const LearnedFace& face, const HeadSurface& surface) const;
-  /// The same where N is about right already: in a tenth of the time.
+  /// The same where N is right already to some 4 deg: in half the time.
   Found FindNear(const LearnedFace& face, const HeadSurface& surface) const;
 
  private:

@@ -12,8 +12,9 @@ namespace {
 constexpr int kShapeLevel = 4;
 constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
-constexpr int kMostSteps = 2;  ///< of a whole texture
-constexpr double kStep_m = 0.01, kStep_rad = 0.1, kAtRest_m = 1e-4, kAtRest_rad = 1e-3;
+// Of a whole texture: steps a round, how far each goes at most, and what is no step any more.
+constexpr int kMostSteps = 2;
+constexpr double kMaxStep_m = 0.01, kMaxStep_rad = 0.1, kAtRest_m = 1e-4, kAtRest_rad = 1e-3;
 constexpr int kRadiusSteps = 4;  ///< of a fixed point iteration
 constexpr float kMinFacing = 0.6f;
 // What the modes of adults' faces leave of a shape, where they tell of it and elsewhere.
@@ -231,9 +232,8 @@ void HeadBundle::RebuildModel() {
   HeadTable table = start_table_;
   for (std::size_t i = 0; i < displaced_.size(); ++i) table.radii_m[i] += displaced_[i];
   model_.reset();  // not two at once
-  model_ = std::make_unique<Model>(
-      config_, HeadGeometry{HeadSurface(start_.surface.shape(), table), start_.p_MR_m, std::nullopt,
-                            start_.is_measured});
+  model_ = std::make_unique<Model>(config_, HeadGeometry{HeadSurface(start_.surface.shape(), table),
+                                                         start_.p_MR_m, std::nullopt});
 }
 
 // All poses by the same steps in M: what no texture that is learned under them can tell.
@@ -247,9 +247,11 @@ double HeadBundle::MoveTexture() {
       sum.H += generic.H;
       sum.g += generic.g;
     }
-    sum.AddPrior(kStep_m, kStep_rad);
-    const Vector6d step = sum.H.ldlt().solve(sum.g);
+    sum.AddPrior(kMaxStep_m, kMaxStep_rad);
+    Vector6d step = sum.H.ldlt().solve(sum.g);
     if (!step.allFinite()) break;
+    step.head<3>() *= std::min(1.0, kMaxStep_m / std::max(step.head<3>().norm(), 1e-12));
+    step.tail<3>() *= std::min(1.0, kMaxStep_rad / std::max(step.tail<3>().norm(), 1e-12));
     const RigidTransform X_MN =
         MakeTransform(ExpRotation(step.tail<3>()), Eigen::Vector3d(step.head<3>()));
     for (HeadView& view : views_) view.X_CM = view.X_CM * X_MN;
@@ -265,6 +267,7 @@ void HeadBundle::Rebase() {
 }
 
 void HeadBundle::MoveFrame(const RigidTransform& X_MN) {
+  VISAVIS_THROW_UNLESS(!start_.is_measured, views_.size());
   const RigidTransform X_NM = X_MN.inverse();
   for (HeadView& view : views_) view.X_CM = view.X_CM * X_NM;
   const HeadSurface& surface_N = model_->faced.head.surface;

@@ -54,7 +54,7 @@ class HeadBundle {
     double texture_ncc{0};  ///< pictures with the texture
     double stereo_ncc{0};   ///< both eyes' pictures
     double contour_px{0};   ///< rms distance of the contours
-    double moved_m{0};      ///< rms movement of the shape, or of the texture on it, after all that
+    double moved_m{0};      ///< rms movement of the shape; the way of the texture on a measured one
   };
   /// One turn of all. @return the agreement before the shape is changed.
   Agreement Round();
@@ -62,7 +62,8 @@ class HeadBundle {
   /// The prior that holds the shape to the one it began with holds it to what it is now.
   void Rebase();
 
-  /// Moves the head's frame on it: poses and shape are told from M afterwards.
+  /// Moves the head's frame on it: poses and shape are told from M afterwards. Not of a measured
+  /// head, whose frame is its own.
   void MoveFrame(const RigidTransform& X_MN);
 
   /// The head as it is now, with its texture under the poses as they are now.
@@ -86,6 +87,7 @@ class HeadBundle {
   void AddStereoShape(const HeadView& view);
   void AddOutline(const HeadView& view);
   double MoveSurface();
+  /// Moves all views' poses alike, on a measured surface. @return how far [m]
   double MoveTexture();
   void RebuildModel();
 

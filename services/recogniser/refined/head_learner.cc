@@ -14,8 +14,7 @@ constexpr int kLongest = 150;                    ///< frames after which one vie
 /// Of a head in its views, with what is beside its outline: they are most of what memory learning
 /// takes.
 constexpr double kRadius_m = 0.15;
-/// Of the bundle: the first of few views needs the face's frame twice, later ones begin where it
-/// was.
+/// Of the bundle: the first, of few views, needs the face's frame twice.
 constexpr int kFirstTurns = 2, kTurns = 1, kRounds = 2;
 
 }  // namespace

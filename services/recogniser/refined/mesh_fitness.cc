@@ -136,6 +136,7 @@ void MeshFitness::AddOutside(const StereoView& view, const Poses& poses, MeshSco
 }
 
 MeshScore MeshFitness::Evaluate(const StereoView& view, const RigidTransform& X_CM) const {
+  for (const EyeView& eye : view) VISAVIS_THROW_UNLESS(eye.scores || !eye.seen(), eye.seen());
   MeshScore score;
   const Poses poses = PosesOf(view, X_CM);
   AddCorrelation(view, poses, &score);

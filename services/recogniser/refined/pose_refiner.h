@@ -24,9 +24,9 @@ struct RefinerConfig {
   }
   double outline_weight{1};
   double outline_weight_with_texture{0.5};
-  double outline_weight_enrolled{0.1};
-  double hairline_weight{0.15};  ///< relative to the outline's
-  double pattern_weight{0.8};    ///< generic face
+  double outline_weight_enrolled{0.1};  ///< or learned by bundling; not of a measured head
+  double hairline_weight{0.15};         ///< relative to the outline's
+  double pattern_weight{0.8};           ///< generic face
   double texture_weight{0.5};
   double stereo_weight{1};
   double stereo_weight_with_texture{1};

@@ -10,6 +10,12 @@ constexpr int kEnrolledEvery = 5;  ///< frames: a stranger is looked at for the 
 constexpr int kStrangerGone = 3;   ///< frames without
 constexpr int kMoreRounds = 2;     ///< of iterations, where a tracked pose has not come to rest
 
+/// What a head that is learned begins with: once a face is enrolled, that of somebody else.
+HeadGeometry ToLearnFrom(HeadGeometry head) {
+  if (head.face) head.is_measured = false;
+  return head;
+}
+
 }  // namespace
 
 RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGeometry& head,
@@ -20,7 +26,7 @@ RefinedEstimator::RefinedEstimator(const RefinedSettings& settings, const HeadGe
       rig_(rig),
       ranges_(rig, InM(settings.space)),
       texture_(head_.face),
-      learner_(settings.refined.refiner, rig, settings.space.distance(), head,
+      learner_(settings.refined.refiner, rig, settings.space.distance(), ToLearnFrom(head),
                settings.refined.learned_views, background),
       scores_{ScoreMap(ranges_.width(), ranges_.height()),
               ScoreMap(ranges_.width(), ranges_.height())},

@@ -8,14 +8,19 @@
 
 namespace visavis {
 
-/// What one eye shows of the current frame. Null pointers: that eye has no picture; no scores alone:
-/// only brightness was looked at.
+/// What one eye shows of the current frame. Null pointers: that eye has no picture; no scores
+/// alone: only brightness was looked at.
 struct EyeView {
   const EyeGeometry* geometry{nullptr};
   const ScoreMap* scores{nullptr};
   const BandImages* bands{nullptr};
 
-  void Close() { scores = nullptr, bands = nullptr; }
+  /// It sees nothing.
+  void Close() {
+    scores = nullptr;
+    bands = nullptr;
+  }
+  /// Brightness, that is; who needs colours asks scores.
   bool seen() const { return bands != nullptr; }
 };
 

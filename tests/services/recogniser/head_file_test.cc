@@ -56,8 +56,13 @@ TEST_F(HeadFileTest, AHeadThatWasWrittenIsReadBackToAThousandthOfAMillimetre) {
 }
 
 TEST_F(HeadFileTest, AMeasuredHeadStaysOne) {
-  SaveHeadFile(name_, {TheAdult().surface, {0, 0, 0}, std::nullopt, true});
-  EXPECT_TRUE(LoadHeadFile(name_).is_measured);
+  const HeadSurface surface(HeadShape{}, TableOf(TheAdult().surface, 5));
+  SaveHeadFile(name_, {surface, {0, 0, 0}, std::nullopt, true});
+  const HeadGeometry read = LoadHeadFile(name_);
+  EXPECT_TRUE(read.is_measured);
+  const Icosphere sphere(5);
+  for (const Eigen::Vector3f& d : sphere.vertices())
+    EXPECT_NEAR(read.surface.Radius(d), surface.Radius(d), 1e-6f);
 }
 
 TEST_F(HeadFileTest, RadiiAloneAreEnough) {

@@ -104,6 +104,18 @@ TEST_F(EnrolledFaceTest, AStrangerIsTrackedOnceSeenLongEnoughAndIsAFaceOfItsOwn)
   EXPECT_TRUE(estimator_.texture().learned());
 }
 
+TEST_F(EnrolledFaceTest, AStrangerDoesNotGetTheMeasuredShapeOfTheEnrolled) {
+  HeadGeometry measured = head_;
+  measured.is_measured = true;
+  RefinedEstimator estimator(settings_, measured, TestRig());
+  scene_.Show(TransformFromPhi(kPlace), StrangerHead);
+  for (int i = 0; i < 60; ++i) estimator.Process(Frame(), {}, &timer_);
+  const auto [count, learned] = estimator.learned_head();
+  ASSERT_GT(count, 0);
+  ASSERT_NE(learned, nullptr);
+  EXPECT_FALSE(learned->is_measured);
+}
+
 TEST_F(EnrolledFaceTest, AnEnrolledFaceThatComesBackAfterAStrangerIsRecognised) {
   MeetStranger();
   const int most = settings_.refined.evidence.strange_frames + 5;

@@ -73,6 +73,17 @@ TEST_P(FaceFrameTest, IsFoundWhereASymmetricFaceIsToldInATurnedFrame) {
   EXPECT_GT(likeness, 0.6);
 }
 
+TEST_P(FaceFrameTest, IsFoundFromNearByToo) {
+  const Vector3d near = 0.6 * GetParam();
+  const RigidTransform X_MN = Turned(near[0], near[1], near[2]);
+  const Head head = AdultIn(X_MN);
+  const auto [found, likeness] = frame_.FindNear(head.face, head.surface);
+  const RigidTransform off = X_MN.inverse() * found;
+  EXPECT_LT(LogRotation(off.linear()).norm() * (180 / M_PI), 0.8);
+  EXPECT_LT(off.translation().norm(), 0.0015);
+  EXPECT_GT(likeness, 0.6);
+}
+
 TEST_F(FaceFrameTest, IsFoundOnAFaceToldFromElsewhere) {
   for (const double up_m : {-0.02, 0.02}) {
     const RigidTransform X_MN =

@@ -6,6 +6,7 @@
 
 #include "common/core/random.h"
 #include "services/recogniser/refined/adult_head.h"
+#include "services/recogniser/refined/face_bundle.h"
 #include "tests/support/mesh_scene.h"
 #include "tests/support/stereo_scene.h"
 
@@ -229,6 +230,19 @@ TEST_F(HeadBundleTest, AMeasuredSurfaceStaysAndItsTextureMovesToWhereItBelongs) 
   EXPECT_TRUE(kept.is_measured);
   for (const Vector3f& p : SharedAdultHead().face.points)
     EXPECT_EQ(kept.surface.Radius(p), SharedAdultHead().surface.Radius(p));
+}
+
+TEST_F(HeadBundleTest, TheFaceDoesNotMoveTheFrameOfAMeasuredHead) {
+  const FaceFrame finder(TheAdult());
+  HeadGeometry head = OtherHead();
+  head.is_measured = true;
+  HeadBundle bundle = Bundle(head);
+  ShowAll(&bundle);
+  BundleFace(finder, 1, 1, &bundle);
+  const HeadGeometry enrolled = bundle.Enrolled();
+  for (const Vector3f& p : SharedAdultHead().face.points)
+    EXPECT_EQ(enrolled.surface.Radius(p), head.surface.Radius(p));
+  EXPECT_THROW(bundle.MoveFrame(RigidTransform::Identity()), std::invalid_argument);
 }
 
 TEST_F(HeadBundleTest, TheSameViewsGiveTheSameHeadBitForBit) {
