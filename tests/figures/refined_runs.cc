@@ -173,7 +173,8 @@ int main(int argc, char* argv[]) {
     const std::string argument = argv[i];
     const bool is_flag = argument == "--head" || argument == "--set";
     if (is_flag && i + 1 < argc) {
-      sets.emplace_back((argument == "--head" ? "refined.head.file=" : "") + std::string(argv[++i]));
+      sets.emplace_back((argument == "--head" ? "refined.head.file=" : "") +
+                        std::string(argv[++i]));
     } else {
       logs.push_back(argument);
     }
