@@ -70,8 +70,9 @@ SampleReplays() {
     }' "$folder/figures"
 }
 
-# SampleReferences, after SampleReplays: the refined estimator, poses aligned by what it finds on the reference views
-# (man_reference: five views, 20 deg apart); from the generic head, and enrolled on these views.
+# SampleReferences, after SampleReplays: the refined estimator, poses aligned by what it finds on
+# the reference views (man_reference: five views, 20 deg apart); from the generic head, and enrolled
+# on these views.
 SampleReferences() {
   local name logs=(man_static.lcm) head seed
   for name in tests/data/man_reference "${sequences[@]}"; do

@@ -47,7 +47,8 @@ Times Start(const StereoRig& rig) {
   Times times;
   for (int i = 0; i < 5; ++i) {
     const double start = ProcessorSeconds();
-    const RefinedEstimator estimator(RecogniserConfig{}.RefinedSettings(), HeadGeometry{}, rig);
+    const RefinedEstimator estimator(RecogniserConfig{}.RefinedSettings(),
+                                     RecogniserConfig{}.RefinedHead(), rig);
     times.us.push_back(1e6 * (ProcessorSeconds() - start));
     times.resident_mb.push_back(ResidentMb());
   }
@@ -59,7 +60,7 @@ Times Play(const std::string& log, bool search, std::uint64_t seed) {
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
   BackgroundThread background(true);
-  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig(), &background);
+  RefinedEstimator estimator(settings, RecogniserConfig{}.RefinedHead(), player.rig(), &background);
   StageTimer timer(&ProcessorSeconds);
   Times times;
   bool was_tracking = false;

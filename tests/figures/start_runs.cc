@@ -39,7 +39,7 @@ Counts Run(const std::string& log, std::uint64_t seed) {
   RefinedSettings settings = RecogniserConfig{}.RefinedSettings();
   settings.seed = seed;
   BackgroundThread background(true);
-  RefinedEstimator estimator(settings, HeadGeometry{}, player.rig(), &background);
+  RefinedEstimator estimator(settings, RecogniserConfig{}.RefinedHead(), player.rig(), &background);
   StageTimer timer(&MonotonicSeconds);
   Counts counts;
   std::optional<RigidTransform> last;

@@ -32,8 +32,9 @@ constexpr Kind kLooks{1, 2, 0.35};           ///< of what is known of a place
 
 constexpr double kLeastInformation = 1e-3;  ///< [1/rad^2]
 constexpr int kPerPoint = 4, kMostSteps = 12, kFewSteps = 3;
-constexpr std::size_t kBestStarts = 3, kFewPoints = 3;  ///< of so many points one, at the start
-constexpr double kFewestPoints = 100;
+constexpr std::size_t kBestStarts = 3;
+constexpr std::size_t kFewPoints = 3;  ///< of so many points one is asked about the starts
+constexpr double kFewestPoints = 100;  ///< that looks are fitted to
 constexpr double kMoved_m = 5e-5, kTurned_rad = 5e-4;  ///< steps so small change nothing
 constexpr double kProbe_m = 5e-4, kProbe_rad = 6e-3;   ///< of the numeric derivative
 constexpr double kStartY_m = 0.010, kStartNod_rad = 0.13, kStartYaw_rad = 0.07;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/core/check.h"
+#include "services/recogniser/refined/head_anchor.h"
 
 namespace visavis {
 namespace {
@@ -12,10 +13,8 @@ namespace {
 constexpr int kShapeLevel = 4;
 constexpr int kFewestPoints = 40;  ///< that a gain is fitted to
 constexpr int kIterations = 6, kReach_px = 6, kOutlineReach_px = 10;
-// Of a whole texture: steps a round, how far each goes at most, and what is no step any more.
-constexpr int kMostSteps = 2;
-constexpr double kMaxStep_m = 0.01, kMaxStep_rad = 0.1, kAtRest_m = 1e-4, kAtRest_rad = 1e-3;
-constexpr int kRadiusSteps = 4;  ///< of a fixed point iteration
+constexpr int kTextureSteps = 2;  ///< of a whole texture, a round
+constexpr int kRadiusSteps = 4;   ///< of a fixed point iteration
 constexpr float kMinFacing = 0.6f;
 // What the modes of adults' faces leave of a shape, where they tell of it and elsewhere.
 constexpr double kOwn_m = 0.001, kOwnRoughness_m = 0.0002;
@@ -236,27 +235,19 @@ void HeadBundle::RebuildModel() {
                                                          start_.p_MR_m, std::nullopt});
 }
 
-// All poses by the same steps in M: what no texture that is learned under them can tell.
+// What no texture that is learned under the poses can tell: as for a face that is learned on the
+// way.
 double HeadBundle::MoveTexture() {
   double moved_m = 0;
-  for (int k = 0; k < kMostSteps; ++k) {
-    PoseEquations sum;
+  for (int k = 0; k < kTextureSteps; ++k) {
+    HeadAnchor anchor;
     for (const HeadView& view : views_) {
       Look(view, true);
-      const PoseEquations generic = model_->faced.refiner.Generic(view_, view.X_CM);
-      sum.H += generic.H;
-      sum.g += generic.g;
+      anchor.Add(TowardsCamera(view.X_CM), model_->faced.refiner.Generic(view_, view.X_CM));
     }
-    sum.AddPrior(kMaxStep_m, kMaxStep_rad);
-    Vector6d step = sum.H.ldlt().solve(sum.g);
-    if (!step.allFinite()) break;
-    step.head<3>() *= std::min(1.0, kMaxStep_m / std::max(step.head<3>().norm(), 1e-12));
-    step.tail<3>() *= std::min(1.0, kMaxStep_rad / std::max(step.tail<3>().norm(), 1e-12));
-    const RigidTransform X_MN =
-        MakeTransform(ExpRotation(step.tail<3>()), Eigen::Vector3d(step.head<3>()));
+    const RigidTransform X_MN = anchor.Correct();
     for (HeadView& view : views_) view.X_CM = view.X_CM * X_MN;
-    moved_m += step.head<3>().norm();
-    if (step.head<3>().norm() < kAtRest_m && step.tail<3>().norm() < kAtRest_rad) break;
+    moved_m += X_MN.translation().norm();
   }
   return moved_m;
 }
