@@ -13,6 +13,7 @@ constexpr float kNoise = 0.5f;        ///< [levels]
 constexpr float kUsualShare = 0.45f;  ///< usual deviation, in units of the whole face's contrast
 constexpr float kUnusual = 2;         ///< times that: something is wrong
 constexpr float kSure = 0.8f, kLikely = 0.5f;  ///< correlation of a patch
+constexpr float kCertain = 0.85f;              ///< likewise: beside something that hides the face
 constexpr float kLeastSure = 0.1f;             ///< of the points
 constexpr int kFewest = 8;                     ///< points that a patch is judged by
 constexpr double kMostHidden = 0.85;
@@ -39,6 +40,7 @@ struct Patch {
 };
 
 using Patches = std::array<Patch, kColumns * kRows>;
+using Marks = std::array<bool, kColumns * kRows>;  ///< of patches
 
 Patches PatchesOf(const FaceTexture& texture, Band band, const FaceSamples& samples) {
   const std::vector<float>& pattern = texture.pattern(band);
@@ -80,6 +82,15 @@ struct Light {
   }
 };
 
+/// The points of @p marked patches are no longer seen in @p samples (null: nothing to do).
+void Unsee(const FaceTexture& texture, const Marks& marked, FaceSamples* samples) {
+  if (samples == nullptr) return;
+  const std::vector<Eigen::Vector3f>& points = texture.points().points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (marked[static_cast<std::size_t>(PatchOf(points[i]))]) samples->seen[i] = 0;
+  }
+}
+
 }  // namespace
 
 double HideOccluded(const FaceTexture& texture, Band band,
@@ -90,7 +101,7 @@ double HideOccluded(const FaceTexture& texture, Band band,
   }
   const std::array<Light, 2> light = {Light(patches[0]), Light(patches[1])};
   int all = 0, num_hidden = 0;
-  std::array<std::array<bool, kColumns * kRows>, 2> hidden{};
+  std::array<Marks, 2> hidden{};
   for (std::size_t e = 0; e < 2; ++e) {
     all += light[e].points;
     // Where one eye sees nothing for certain, the light is what the other sees.
@@ -108,14 +119,20 @@ double HideOccluded(const FaceTexture& texture, Band band,
     }
   }
   if (num_hidden == 0 || num_hidden > kMostHidden * all) return 0;
-  const std::vector<Eigen::Vector3f>& points = texture.points().points;
-  for (std::size_t e = 0; e < 2; ++e) {
-    if (samples[e] == nullptr) continue;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (hidden[e][static_cast<std::size_t>(PatchOf(points[i]))]) samples[e]->seen[i] = 0;
-    }
-  }
+  for (std::size_t e = 0; e < 2; ++e) Unsee(texture, hidden[e], samples[e]);
   return static_cast<double>(num_hidden) / all;
+}
+
+void KeepCertain(const FaceTexture& texture, Band band,
+                 const std::array<FaceSamples*, 2>& samples) {
+  for (FaceSamples* eye : samples) {
+    if (eye == nullptr) continue;
+    const Patches patches = PatchesOf(texture, band, *eye);
+    Marks doubtful{};
+    for (std::size_t k = 0; k < doubtful.size(); ++k)
+      doubtful[k] = patches[k].count < kFewest || patches[k].correlation() < kCertain;
+    Unsee(texture, doubtful, eye);
+  }
 }
 
 }  // namespace visavis

@@ -14,4 +14,8 @@ namespace visavis {
 double HideOccluded(const FaceTexture& texture, Band band,
                     const std::array<FaceSamples*, 2>& samples);
 
+/// Of the parts of a face of which some are hidden, keeps those that show beyond doubt what
+/// @p texture has there: the rest, at the edge of what hides it or plain, may mislead.
+void KeepCertain(const FaceTexture& texture, Band band, const std::array<FaceSamples*, 2>& samples);
+
 }  // namespace visavis

@@ -14,10 +14,7 @@ constexpr int kMoreRounds = 2;
 constexpr double kWellNcc = 0.92;     ///< of the texture: it fits, no more rounds
 constexpr double kWholeNcc = 0.8;     ///< of the texture: nothing is before the face
 constexpr double kHiddenDoubt = 0.3;  ///< the less is seen, the better it must fit
-// What is before the face has edges of its own, at another depth: beside them the eyes agree on
-// that.
-constexpr double kStereoHidden = 0.1, kNoStereoHidden = 0.3;
-constexpr double kNearNcc = 0.75;  ///< of the texture's fine band: the pose is almost right
+constexpr double kNearNcc = 0.75;     ///< of the texture's fine band: the pose is almost right
 constexpr double kPrior_m = 0.025, kPrior_rad = 0.2;
 constexpr double kAtRest_m = 0.0001, kAtRest_rad = 0.0005;  ///< steps so small change nothing
 constexpr int kLastReachFrom = 2;  ///< iterations before look farther along the contours' normals
@@ -134,27 +131,34 @@ void PoseRefiner::AddTexture(const StereoView& view, const std::array<EyePose, 2
     seen[e] = &samples_[e];
   }
   const double hidden = hide ? HideOccluded(texture, band, seen) : 0;
+  const auto add = [&](std::size_t e) {
+    return AddPattern(texture.points(), samples_[e], poses[e].R_CM, texture.pattern(band),
+                      texture.known(band), kTextureSigma,
+                      static_cast<float>(config_.texture_weight), equations);
+  };
   double sum = 0;
-  int points = 0, eyes = 0;
+  int points = 0;
   for (std::size_t e = 0; e < 2; ++e) {
-    if (!view[e].seen()) continue;
-    const GainOffset fit = AddPattern(texture.points(), samples_[e], poses[e].R_CM,
-                                      texture.pattern(band), texture.known(band), kTextureSigma,
-                                      static_cast<float>(config_.texture_weight), equations);
+    if (seen[e] == nullptr) continue;
+    const GainOffset fit =
+        hidden > 0 ? FitPattern(samples_[e], texture.pattern(band), texture.known(band)) : add(e);
     sum += fit.count * fit.correlation;
     points += fit.count;
-    ++eyes;
   }
   refined->texture_ncc = sum / std::max(points, 1) - kHiddenDoubt * hidden;
   refined->hidden = hidden;
-  if (eyes == 2) {
-    const double stereo_weight =
-        config_.stereo_weight_with_texture *
-        std::clamp((kNoStereoHidden - hidden) / (kNoStereoHidden - kStereoHidden), 0.0, 1.0);
+  const bool both = seen[0] != nullptr && seen[1] != nullptr;
+  if (both)
     refined->stereo_ncc = StereoCorrelation(samples_[0], samples_[1], texture.points().size());
-    AddAgreement(view, poses, texture.points(), band, texture.fixed() ? kBrightness : kFineBand,
-                 stereo_weight, equations);
+  if (hidden > 0) {  // all that is left was judged, but only what is certain moves the pose
+    KeepCertain(texture, band, seen);
+    for (std::size_t e = 0; e < 2; ++e) {
+      if (seen[e] != nullptr) add(e);
+    }
   }
+  if (both)
+    AddAgreement(view, poses, texture.points(), band, texture.fixed() ? kBrightness : kFineBand,
+                 config_.stereo_weight_with_texture, equations);
 }
 
 PoseEquations PoseRefiner::Generic(const StereoView& view, const RigidTransform& X_CM) {

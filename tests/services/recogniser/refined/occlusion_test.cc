@@ -101,5 +101,16 @@ TEST_F(OcclusionTest, ThePictureOfAHalfHiddenFaceFitsOnceTheHandIsLeftOut) {
   EXPECT_GT(after, 0.95);
 }
 
+TEST_F(OcclusionTest, BesideWhatHidesOnlyPartsThatCertainlyShowTheFaceAreKept) {
+  const auto slanted = [](const Eigen::Vector3f& p) { return p.x() + 0.7f * p.y() > 0.03f; };
+  Hide(slanted);
+  HideOccluded(texture_, kFineBand, {&samples_, nullptr});
+  const double left = SeenInAndOut(slanted).first;
+  EXPECT_GT(left, 0.05);
+  KeepCertain(texture_, kFineBand, {&samples_, nullptr});
+  EXPECT_LT(SeenInAndOut(slanted).first, 0.3 * left);
+  EXPECT_GT(SeenInAndOut(slanted).second, 0.5);
+}
+
 }  // namespace
 }  // namespace visavis

@@ -156,7 +156,7 @@ TEST_F(RefinedEstimatorTest, AFaceHalfCoveredIsTrackedAndSaidToBeLessSure) {
   for (int i = 0; i < 10; ++i) SeeHeadAt(kPlace);
   const Matrix6d free = *See().covariance;
   const Estimate& covered = SeeHeadAt(kPlace, {}, CoveredFrom(0.005f));
-  ExpectTracked(covered, 6, 2.5);
+  ExpectTracked(covered, 3, 1.5);
   EXPECT_GT(std::sqrt((*covered.covariance)(2, 2)), 2 * std::sqrt(free(2, 2)));
 }
 
